@@ -1,0 +1,219 @@
+"""The dtype, shape and broadcasting policy: what every public function does with its arguments.
+
+float32 stays float32, float64 stays float64, half promotes to single; arrays of equal standing promote as NumPy
+does; lists and integers that mean coordinates become double. Kernels see C-contiguous, aligned, native arrays.
+"""
+
+from __future__ import annotations
+
+import math
+import operator
+from collections.abc import Callable, Sequence
+from typing import Any, TypeAlias
+
+import numpy as np
+from numpy.typing import ArrayLike, DTypeLike, NDArray
+
+Floats: TypeAlias = NDArray[np.floating[Any]]
+"""An array of float32 or float64."""
+
+__all__ = [
+    "Floats",
+    "broadcast",
+    "choice",
+    "count",
+    "floats",
+    "image",
+    "indices",
+    "matrices",
+    "number",
+    "output",
+    "progress_callback",
+    "result_dtype",
+    "vectors",
+]
+
+
+def _own_dtype(name: str, value: Any) -> np.dtype[Any] | None:
+    """The precision that one argument asks for; None if it has no say (Python numbers and lists)."""
+    dtype = getattr(value, "dtype", None)
+    if dtype is None:
+        return None
+    dtype = np.dtype(dtype)
+    if dtype.kind in "iub":
+        return np.dtype(np.float64)
+    if dtype.kind != "f":
+        raise TypeError(f"{name}: expected real numbers, got dtype {dtype}")
+    return np.dtype(np.float64 if dtype.itemsize > 4 else np.float32)
+
+
+def result_dtype(**arrays: Any) -> np.dtype[Any]:
+    """The precision in which arrays of equal standing are computed together.
+
+    Arguments that are None do not count, nor do Python numbers and lists beside an array.
+    """
+    own = [d for d in (_own_dtype(n, a) for n, a in arrays.items() if a is not None) if d is not None]
+    return np.result_type(*own) if own else np.dtype(np.float64)
+
+
+def floats(name: str, value: ArrayLike, dtype: DTypeLike | None = None) -> Floats:
+    """`value` as a C-contiguous array of float32 or float64 (or of the `dtype` that governs)."""
+    target = np.dtype(dtype) if dtype is not None else result_dtype(**{name: value})
+    try:
+        array = np.asarray(value)
+    except ValueError as error:
+        raise ValueError(f"{name}: {error}") from None
+    if array.dtype.kind not in "fiub":
+        raise TypeError(f"{name}: expected real numbers, got dtype {array.dtype}")
+    with np.errstate(over="ignore"):
+        return np.require(array, dtype=target, requirements=["C", "A"])
+
+
+def vectors(name: str, value: ArrayLike, n: int = 3, dtype: DTypeLike | None = None) -> Floats:
+    """`value` as vectors of `n` components, shape (..., n)."""
+    array = floats(name, value, dtype)
+    if array.ndim == 0 or array.shape[-1] != n:
+        raise ValueError(f"{name}: expected shape (..., {n}), got {array.shape}")
+    return array
+
+
+def matrices(name: str, value: ArrayLike, n: int = 4, dtype: DTypeLike | None = None) -> Floats:
+    """`value` as square matrices, shape (..., n, n)."""
+    array = floats(name, value, dtype)
+    if array.shape[-2:] != (n, n):
+        raise ValueError(f"{name}: expected shape (..., {n}, {n}), got {array.shape}")
+    return array
+
+
+def image(name: str, value: ArrayLike, channels: int | None = None, dtype: DTypeLike | None = None) -> Floats:
+    """A picture of radiometric values, (H, W) or (H, W, C); integer pictures are refused."""
+    kind = getattr(value, "dtype", np.dtype(float)).kind
+    if kind in "iub":
+        raise TypeError(
+            f"{name}: expected linear floating-point values, got an integer picture; "
+            f"convert with shadelab.color.decode_transfer({name} / 255.0)"
+        )
+    array = floats(name, value, dtype)
+    if array.ndim not in (2, 3) or (channels is not None and (array.ndim != 3 or array.shape[-1] != channels)):
+        expected = "(H, W) or (H, W, C)" if channels is None else f"(H, W, {channels})"
+        raise ValueError(f"{name}: expected shape {expected}, got {array.shape}")
+    return array
+
+
+def indices(name: str, value: ArrayLike, n: int | None = None, below: int | None = None) -> NDArray[np.int32]:
+    """`value` as int32 indices, of `n` columns and in [0, below) if given; the first bad index is named."""
+    array = np.asarray(value)
+    if array.size == 0 and array.dtype.kind == "f":
+        array = array.astype(np.int32)
+    if array.dtype.kind not in "iu":
+        raise TypeError(f"{name}: expected integers, got dtype {array.dtype}")
+    if n is not None and (array.ndim != 2 or array.shape[-1] != n):
+        raise ValueError(f"{name}: expected shape (m, {n}), got {array.shape}")
+    limit = np.iinfo(np.int32).max if below is None else below - 1
+    bad = (array < 0) | (array > limit)
+    if bad.any():
+        at = tuple(int(i) for i in np.argwhere(bad)[0])
+        raise ValueError(f"{name}: index {array[at]} at {at} is out of range [0, {limit + 1})")
+    return np.require(array, dtype=np.int32, requirements=["C", "A"])
+
+
+def broadcast(
+    core: dict[str, tuple[Floats, int]],
+) -> tuple[tuple[int, ...], list[Floats]]:
+    """Broadcasts leading axes. `core` maps a name to (array, number of trailing core axes).
+
+    Returns the batch shape and the arrays flattened to (n, *core), C-contiguous.
+    """
+    leads = {name: a.shape[: a.ndim - k] for name, (a, k) in core.items()}
+    try:
+        shape = np.broadcast_shapes(*leads.values())
+    except ValueError:
+        raise ValueError("cannot broadcast " + ", ".join(f"{n}: {s}" for n, s in leads.items())) from None
+    size = math.prod(shape)
+    flat = []
+    for array, k in core.values():
+        tail = array.shape[array.ndim - k :]
+        full = array if array.shape[: array.ndim - k] == shape else np.broadcast_to(array, shape + tail)
+        flat.append(np.require(full.reshape((size, *tail)), requirements=["C", "A"]))
+    return shape, flat
+
+
+def output(name: str, out: NDArray[Any] | None, shape: Sequence[int], dtype: DTypeLike) -> NDArray[Any]:
+    """`out` checked against shape, dtype and layout, or a new array where it is None."""
+    if out is None:
+        return np.empty(tuple(shape), dtype)
+    if not isinstance(out, np.ndarray):
+        raise TypeError(f"{name}: expected an array to write into, got {type(out).__name__}")
+    if out.shape != tuple(shape) or out.dtype != np.dtype(dtype):
+        raise ValueError(
+            f"{name}: expected shape {tuple(shape)} and dtype {np.dtype(dtype)}, got {out.shape} and {out.dtype}"
+        )
+    if not (out.flags.c_contiguous and out.flags.aligned and out.flags.writeable):
+        raise ValueError(f"{name}: expected a C-contiguous, writeable array")
+    return out
+
+
+def number(
+    name: str,
+    value: Any,
+    low: float = -math.inf,
+    high: float = math.inf,
+    *,
+    above: float | None = None,
+    below: float | None = None,
+) -> float:
+    """A finite Python float in [low, high], and strictly between `above` and `below` if given."""
+    try:
+        x = float(value)
+    except (TypeError, ValueError):
+        raise TypeError(f"{name}: expected a number, got {type(value).__name__}") from None
+    if not math.isfinite(x):
+        raise ValueError(f"{name}: expected a finite number, got {x}")
+    if x < low or x > high or (above is not None and x <= above) or (below is not None and x >= below):
+        left = f"({above:g}" if above is not None else f"[{low:g}" if math.isfinite(low) else "(-inf"
+        right = f"{below:g})" if below is not None else f"{high:g}]" if math.isfinite(high) else "inf)"
+        raise ValueError(f"{name}: expected a number in {left}, {right}, got {x:g}")
+    return x
+
+
+def count(name: str, value: Any, low: int = 0, high: int | None = None) -> int:
+    """An integer in [low, high]."""
+    try:
+        x = operator.index(value)
+    except TypeError:
+        raise TypeError(f"{name}: expected an integer, got {type(value).__name__}") from None
+    if x < low or (high is not None and x > high):
+        bound = f"at least {low}" if high is None else f"from {low} to {high}"
+        raise ValueError(f"{name}: expected an integer {bound}, got {x}")
+    return x
+
+
+def choice(name: str, value: Any, options: Sequence[str]) -> str:
+    """One of `options`."""
+    if not isinstance(value, str):
+        raise TypeError(f"{name}: expected a string, got {type(value).__name__}")
+    if value not in options:
+        raise ValueError(f"{name}: expected one of {', '.join(map(repr, options))}, got {value!r}")
+    return value
+
+
+def progress_callback(progress: bool | Callable[[int, int], object] | None, label: str) -> Any:
+    """What kernels call with (done, total): None, the user's callable, or a progress bar for True."""
+    if progress is None or progress is False:
+        return None
+    if progress is True:
+        from tqdm.auto import tqdm
+
+        bar = tqdm(total=1, desc=label, leave=False)
+
+        def show(done: int, total: int) -> None:
+            bar.total = total
+            bar.n = done
+            bar.refresh()
+            if done >= total:
+                bar.close()
+
+        return show
+    if not callable(progress):
+        raise TypeError(f"progress: expected True, False or a callable (done, total), got {type(progress).__name__}")
+    return progress

@@ -1,0 +1,1 @@
+"""The trade between speed and accuracy, measured."""

@@ -1,0 +1,1 @@
+"""The extremes of each chapter, one file a chapter (see `shadelab.study.stability`)."""

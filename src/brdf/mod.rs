@@ -1,0 +1,1 @@
+//! Reflection models: evaluation, sampling, density.

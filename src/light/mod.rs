@@ -1,0 +1,1 @@
+//! Punctual and area lights.

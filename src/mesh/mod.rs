@@ -1,0 +1,1 @@
+//! The triangle mesh: normals and primitives.

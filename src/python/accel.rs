@@ -1,0 +1,5 @@
+//! Bindings of `accel`.
+use pyo3::prelude::*;
+
+#[pymodule]
+pub mod accel {}

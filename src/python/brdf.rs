@@ -1,0 +1,5 @@
+//! Bindings of `brdf`.
+use pyo3::prelude::*;
+
+#[pymodule]
+pub mod brdf {}

@@ -1,0 +1,5 @@
+//! Bindings of `color`.
+use pyo3::prelude::*;
+
+#[pymodule]
+pub mod color {}

@@ -1,0 +1,5 @@
+//! Bindings of `image`.
+use pyo3::prelude::*;
+
+#[pymodule]
+pub mod image {}

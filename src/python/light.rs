@@ -1,0 +1,5 @@
+//! Bindings of `light`.
+use pyo3::prelude::*;
+
+#[pymodule]
+pub mod light {}

@@ -1,0 +1,5 @@
+//! Bindings of `mesh`.
+use pyo3::prelude::*;
+
+#[pymodule]
+pub mod mesh {}

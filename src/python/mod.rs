@@ -1,0 +1,29 @@
+//! The module tree that Python sees as `shadelab._kernels`: one submodule a chapter.
+
+pub mod array;
+
+mod accel;
+mod brdf;
+mod color;
+mod geometry;
+mod image;
+mod light;
+mod mesh;
+mod pathtrace;
+mod raster;
+mod runtime;
+mod sampling;
+mod shadow;
+mod transform;
+
+use pyo3::prelude::*;
+
+#[pymodule]
+mod _kernels {
+    #[pymodule_export]
+    use super::{
+        accel::accel, brdf::brdf, color::color, geometry::geometry, image::image, light::light, mesh::mesh,
+        pathtrace::pathtrace, raster::raster, runtime::runtime, sampling::sampling, shadow::shadow,
+        transform::transform,
+    };
+}

@@ -1,0 +1,5 @@
+//! Bindings of `pathtrace`.
+use pyo3::prelude::*;
+
+#[pymodule]
+pub mod pathtrace {}

@@ -1,0 +1,5 @@
+//! Bindings of `raster`.
+use pyo3::prelude::*;
+
+#[pymodule]
+pub mod raster {}

@@ -1,0 +1,5 @@
+//! Bindings of `sampling`.
+use pyo3::prelude::*;
+
+#[pymodule]
+pub mod sampling {}

@@ -1,0 +1,5 @@
+//! Bindings of `shadow`.
+use pyo3::prelude::*;
+
+#[pymodule]
+pub mod shadow {}

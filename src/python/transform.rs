@@ -1,0 +1,5 @@
+//! Bindings of `transform`.
+use pyo3::prelude::*;
+
+#[pymodule]
+pub mod transform {}

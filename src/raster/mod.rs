@@ -1,0 +1,1 @@
+//! The rasterisation pipeline: coverage, depth, interpolation, G-buffer.

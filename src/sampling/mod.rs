@@ -1,0 +1,1 @@
+//! Generators, sequences, and warps with their densities.

@@ -1,0 +1,1 @@
+//! Model, view, projection, viewport: matrices that act on column vectors.
