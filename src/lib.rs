@@ -3,24 +3,24 @@
 //! The chapters stand in reading order, from the ground up; a chapter uses only those above it. Kernels are pure Rust,
 //! generic over [`real::Real`] (f32, f64), and know nothing of Python; `python` binds them.
 
-pub mod math;
-pub mod parallel;
 pub mod real;
-pub mod simd;
 pub mod vec;
+pub mod math;
+pub mod simd;
+pub mod parallel;
 
-pub mod accel;
-pub mod brdf;
+pub mod transform;
+pub mod sampling;
+pub mod image;
 pub mod color;
 pub mod geometry;
-pub mod image;
-pub mod light;
 pub mod mesh;
-pub mod pathtrace;
+pub mod accel;
+pub mod brdf;
+pub mod light;
 pub mod raster;
-pub mod sampling;
+pub mod pathtrace;
 pub mod shadow;
-pub mod transform;
 
 #[cfg(feature = "python")]
 mod python;

@@ -1,7 +1,22 @@
-"""shadelab: the laboratory of real-time rendering for NumPy."""
+"""shadelab: the laboratory of real-time rendering for NumPy.
+
+Every technique of the real-time renderer is a function over arrays and stands beside the exact reference that it
+approximates; `shadelab.study` measures what each costs and what it loses. Chapters, from the ground up:
+
+geometry
+    Ray tests and barycentrics.
+"""
 
 from __future__ import annotations
 
 from . import geometry
+from ._runtime import set_threads, simd, simd_level, simd_levels, threads
 
-__all__ = ["geometry"]
+__all__ = [
+    "geometry",
+    "set_threads",
+    "simd",
+    "simd_level",
+    "simd_levels",
+    "threads",
+]
