@@ -79,11 +79,10 @@ pub fn pool() -> Arc<ThreadPool> {
 
 /// Runs `task(0) … task(tasks - 1)` on the pool, each once. Results must not depend on which thread takes a task.
 pub fn run(watch: &mut dyn Watch, tasks: usize, task: impl Fn(usize) + Sync) -> Result<(), Interrupted> {
-    // One piece is not worth waking a thread for.
-    if tasks <= 1 {
-        if tasks == 1 {
-            task(0);
-        }
+    // One piece is not worth waking a thread for; and on a thread of the pool, waiting for the others could
+    // wait for itself.
+    if tasks <= 1 || rayon::current_thread_index().is_some() {
+        (0..tasks).for_each(task);
         return finish(watch.tick(tasks, tasks));
     }
     let (next, done, stop) = (AtomicUsize::new(0), AtomicUsize::new(0), AtomicBool::new(false));
@@ -270,6 +269,16 @@ mod tests {
             }
         }
         set_threads(0);
+    }
+
+    #[test]
+    fn work_inside_work_runs_where_it_is() {
+        let total = AtomicUsize::new(0);
+        run(&mut Quiet, 50, |_| {
+            run(&mut Quiet, 20, |_| drop(total.fetch_add(1, Ordering::Relaxed))).unwrap();
+        })
+        .unwrap();
+        assert_eq!(total.into_inner(), 1000);
     }
 
     #[test]
