@@ -3,17 +3,20 @@
 Every technique of the real-time renderer is a function over arrays and stands beside the exact reference that it
 approximates; `shadelab.study` measures what each costs and what it loses. Chapters, from the ground up:
 
+sampling
+    Generators, sequences, and warps with their densities.
 geometry
     Ray tests and barycentrics.
 """
 
 from __future__ import annotations
 
-from . import geometry
+from . import geometry, sampling
 from ._runtime import set_threads, simd, simd_level, simd_levels, threads
 
 __all__ = [
     "geometry",
+    "sampling",
     "set_threads",
     "simd",
     "simd_level",
