@@ -171,7 +171,7 @@ pub struct Rows<'a, T> {
 
 impl<T: Send> Pieces for Rows<'_, T> {
     fn items(&self) -> usize {
-        if self.width == 0 { 0 } else { self.data.len() / self.width }
+        self.data.len().checked_div(self.width).unwrap_or(0)
     }
     fn cut(self, at: usize) -> (Self, Self) {
         let (a, b) = self.data.split_at_mut(at * self.width);

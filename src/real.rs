@@ -66,6 +66,8 @@ pub trait Real:
     /// The one matrix of a camera, a node, a light.
     type Mat4: Copy + Send + Sync;
 
+    /// f64, else f32: chooses among constants, never among methods.
+    const DOUBLE: bool;
     const INFINITY: Self;
     const NAN: Self;
     /// Distance from 1 to the next larger number: twice the unit round-off.
@@ -159,6 +161,7 @@ macro_rules! scalar {
             type V4<S: Simd> = $v4<S>;
             type V8<S: Simd> = $v8<S>;
             type Mat4 = $mat4;
+            const DOUBLE: bool = $mantissa == 52;
             const INFINITY: $t = <$t>::INFINITY;
             const NAN: $t = <$t>::NAN;
             const EPSILON: $t = <$t>::EPSILON;

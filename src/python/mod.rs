@@ -8,6 +8,7 @@ mod color;
 mod geometry;
 mod image;
 mod light;
+mod math;
 mod mesh;
 mod pathtrace;
 mod raster;
@@ -22,8 +23,8 @@ use pyo3::prelude::*;
 mod _kernels {
     #[pymodule_export]
     use super::{
-        accel::accel, brdf::brdf, color::color, geometry::geometry, image::image, light::light, mesh::mesh,
-        pathtrace::pathtrace, raster::raster, runtime::runtime, sampling::sampling, shadow::shadow,
-        transform::transform,
+        accel::accel, brdf::brdf, color::color, geometry::geometry, image::image, light::light, math::math,
+        mesh::mesh, pathtrace::pathtrace, raster::raster, runtime::runtime, sampling::sampling,
+        shadow::shadow, transform::transform,
     };
 }
