@@ -7,15 +7,18 @@ sampling
     Generators, sequences, and warps with their densities.
 geometry
     Ray tests and barycentrics.
+raster
+    The pipeline: coverage, depth, interpolation, G-buffer.
 """
 
 from __future__ import annotations
 
-from . import geometry, sampling
+from . import geometry, raster, sampling
 from ._runtime import set_threads, simd, simd_level, simd_levels, threads
 
 __all__ = [
     "geometry",
+    "raster",
     "sampling",
     "set_threads",
     "simd",

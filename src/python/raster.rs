@@ -2,4 +2,103 @@
 use pyo3::prelude::*;
 
 #[pymodule]
-pub mod raster {}
+pub mod raster {
+    use crate::parallel::{self, Interrupted, Watch};
+    use crate::python::array::{In, Out, run};
+    use crate::raster::{self as kernels, Cull, Depth, Options, Visibility};
+    use crate::real;
+    use pyo3::exceptions::PyValueError;
+    use pyo3::prelude::*;
+    use std::sync::atomic::{AtomicUsize, Ordering};
+
+    /// Refuses indices outside `[0, below)`, naming the first.
+    fn check_indices(py: Python<'_>, faces: &[[i32; 3]], below: usize) -> PyResult<()> {
+        let bad = run(py, None, |watch| first_bad_face(watch, faces, below))?;
+        let Some(i) = bad else { return Ok(()) };
+        let k = (0..3).find(|&k| faces[i][k] < 0 || faces[i][k] as usize >= below).unwrap_or(0);
+        let index = faces[i][k];
+        Err(PyValueError::new_err(format!("faces: index {index} at ({i}, {k}) is out of range [0, {below})")))
+    }
+
+    fn first_bad_face(
+        watch: &mut dyn Watch,
+        faces: &[[i32; 3]],
+        below: usize,
+    ) -> Result<Option<usize>, Interrupted> {
+        let first = AtomicUsize::new(usize::MAX);
+        let bad = |f: &[i32; 3]| f.iter().any(|&k| k < 0 || k as usize >= below);
+        parallel::for_each(watch, faces, 1 << 16, |start, faces| {
+            // As unsigned numbers negative indices are the largest, so one maximum tells, in lanes.
+            let largest = faces.as_flattened().iter().fold(0u32, |m, &k| m.max(k as u32));
+            if largest as usize >= below
+                && let Some(i) = faces.iter().position(bad)
+            {
+                first.fetch_min(start + i, Ordering::Relaxed);
+            }
+        })?;
+        let first = first.into_inner();
+        Ok((first < usize::MAX).then_some(first))
+    }
+
+    fn options(size: (usize, usize), samples: usize, cull: &str, depth: &str) -> PyResult<Options> {
+        let cull = match cull {
+            "none" => Cull::None,
+            "back" => Cull::Back,
+            "front" => Cull::Front,
+            other => return Err(PyValueError::new_err(format!("cull: unknown mode {other:?}"))),
+        };
+        let depth = match depth {
+            "standard" => Depth::Standard,
+            "zero_to_one" => Depth::ZeroToOne,
+            "reversed" => Depth::Reversed,
+            other => return Err(PyValueError::new_err(format!("depth: unknown convention {other:?}"))),
+        };
+        Ok(Options { width: size.0, height: size.1, samples, cull, depth })
+    }
+
+    #[pyfunction]
+    fn rasterize(
+        py: Python<'_>,
+        clip: &Bound<'_, PyAny>,
+        faces: &Bound<'_, PyAny>,
+        size: (usize, usize),
+        samples: usize,
+        cull: &str,
+        depth: &str,
+        out: (Bound<'_, PyAny>, Bound<'_, PyAny>, Bound<'_, PyAny>, Bound<'_, PyAny>),
+    ) -> PyResult<()> {
+        let options = options(size, samples, cull, depth)?;
+        let faces = In::<i32>::of("faces", faces)?;
+        real!(clip, T => {
+            let clip = In::<T>::of("clip", clip)?;
+            let (mut face, mut u) = (Out::<i32>::of("out.face", &out.0)?, Out::<T>::of("out.u", &out.1)?);
+            let (mut v, mut depth) = (Out::<T>::of("out.v", &out.2)?, Out::<T>::of("out.depth", &out.3)?);
+            let (clip, faces) = (clip.items()?, faces.items()?);
+            check_indices(py, faces, clip.len())?;
+            let out = Visibility { face: face.slice()?, u: u.slice()?, v: v.slice()?, depth: depth.slice()? };
+            run(py, None, |watch| kernels::rasterize(watch, clip, faces, &options, out))
+        })
+    }
+
+    #[pyfunction]
+    fn rasterize_depth(
+        py: Python<'_>,
+        clip: &Bound<'_, PyAny>,
+        faces: &Bound<'_, PyAny>,
+        size: (usize, usize),
+        samples: usize,
+        cull: &str,
+        depth: &str,
+        out: &Bound<'_, PyAny>,
+    ) -> PyResult<()> {
+        let options = options(size, samples, cull, depth)?;
+        let faces = In::<i32>::of("faces", faces)?;
+        real!(clip, T => {
+            let clip = In::<T>::of("clip", clip)?;
+            let mut out = Out::<T>::of("out", out)?;
+            let (clip, faces, out) = (clip.items()?, faces.items()?, out.slice()?);
+            check_indices(py, faces, clip.len())?;
+            run(py, None, |watch| kernels::rasterize_depth(watch, clip, faces, &options, out))
+        })
+    }
+}
