@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import dataclass
-from typing import Any, Literal
+from typing import Any, Literal, TypeAlias
 
 import numpy as np
 from numpy.typing import ArrayLike, DTypeLike, NDArray
@@ -12,7 +13,23 @@ from . import _arrays
 from ._arrays import Floats
 from ._kernels import sampling as _kernels
 
-__all__ = ["Generator", "philox", "sobol"]
+__all__ = [
+    "Generator",
+    "cosine_hemisphere_to_square",
+    "disk_to_square",
+    "philox",
+    "sobol",
+    "square_to_cosine_hemisphere",
+    "square_to_cosine_hemisphere_pdf",
+    "square_to_disk",
+    "square_to_disk_pdf",
+    "square_to_triangle",
+    "square_to_triangle_pdf",
+    "triangle_to_square",
+]
+
+DiskMethod: TypeAlias = Literal["concentric", "polar"]
+TriangleMethod: TypeAlias = Literal["fold", "root"]
 
 
 def _unsigned(name: str, value: ArrayLike, dtype: DTypeLike) -> NDArray[Any]:
@@ -223,3 +240,305 @@ def sobol(
     out = _arrays.output("out", out, (n, dimensions), _precision(dtype))
     _kernels.sobol(None if scramble is None else seed, start, out)
     return out
+
+
+def _warp(name: str, value: ArrayLike, into: int, kernel: Callable[..., None], size: int = 2, *method: str) -> Floats:
+    """Vectors of `size` components through a kernel, into vectors of `into` (0: into numbers)."""
+    array = _arrays.vectors(name, value, size)
+    flat = array.reshape(-1, size)
+    out = _arrays.output("out", None, (len(flat), max(into, 1)), array.dtype)
+    kernel(flat, *method, out)
+    return out.reshape(array.shape[:-1] + ((into,) if into else ()))
+
+
+def square_to_disk(u: ArrayLike, method: DiskMethod = "concentric") -> Floats:
+    """Points of the unit square onto the unit disk, areas in constant proportion.
+
+    Parameters
+    ----------
+    u : array_like, shape (..., 2)
+        In [0, 1].
+    method : {"concentric", "polar"}
+        Squares become circles, neighbours stay together; or radius √u and angle 2πv, torn along a radius.
+
+    Returns
+    -------
+    ndarray, shape (..., 2)
+        Points, no farther from the centre than one, up to rounding.
+
+    Raises
+    ------
+    TypeError, ValueError
+        If `u` is not real or not of two components, or the method is unknown.
+
+    Notes
+    -----
+    Within 3 rounding units of 1 of the exact point (4 for "polar"). About 10 ns a point and thread.
+
+    References
+    ----------
+    P. Shirley, K. Chiu, *A low distortion map between disk and square*, 1997.
+
+    Examples
+    --------
+    >>> square_to_disk([[0.5, 0.5], [1.0, 0.5]])
+    array([[0., 0.],
+           [1., 0.]])
+    """
+    _arrays.choice("method", method, ("concentric", "polar"))
+    return _warp("u", u, 2, _kernels.square_to_disk, 2, method)
+
+
+def disk_to_square(points: ArrayLike, method: DiskMethod = "concentric") -> Floats:
+    """The inverse of `square_to_disk`.
+
+    Parameters
+    ----------
+    points : array_like, shape (..., 2)
+        In the unit disk.
+    method : {"concentric", "polar"}
+        That of the map which is inverted.
+
+    Returns
+    -------
+    ndarray, shape (..., 2)
+        In [0, 1).
+
+    Raises
+    ------
+    TypeError, ValueError
+        If `points` is not real or not of two components, or the method is unknown.
+
+    Notes
+    -----
+    Back on the square within 4 rounding units of 1. About 10 ns a point and thread.
+
+    Examples
+    --------
+    >>> disk_to_square([0.5, 0.0])
+    array([0.75, 0.5 ])
+    """
+    _arrays.choice("method", method, ("concentric", "polar"))
+    return _warp("points", points, 2, _kernels.disk_to_square, 2, method)
+
+
+def square_to_disk_pdf(points: ArrayLike) -> Floats:
+    """The density of `square_to_disk`'s points per area: 1/π in the disk, 0 outside.
+
+    Parameters
+    ----------
+    points : array_like, shape (..., 2)
+
+    Returns
+    -------
+    ndarray, shape (...)
+
+    Raises
+    ------
+    TypeError, ValueError
+        If `points` is not real or not of two components.
+
+    Notes
+    -----
+    The rim counts as inside, four rounding units wide.
+
+    Examples
+    --------
+    >>> square_to_disk_pdf([[0.5, 0.0], [1.5, 0.0]])
+    array([0.31830989, 0.        ])
+    """
+    return _warp("points", points, 0, _kernels.square_to_disk_pdf)
+
+
+def square_to_triangle(u: ArrayLike, method: TriangleMethod = "fold") -> Floats:
+    """Points of the unit square onto barycentrics (u, v), areas in constant proportion.
+
+    Parameters
+    ----------
+    u : array_like, shape (..., 2)
+        In [0, 1].
+    method : {"fold", "root"}
+        Folding the square (little distortion, no root), or (1 - √s, t√s), which keeps lines through one corner.
+
+    Returns
+    -------
+    ndarray, shape (..., 2)
+        u, v ≥ 0 with u + v ≤ 1: the point (1 - u - v) a + u b + v c of a triangle a, b, c.
+
+    Raises
+    ------
+    TypeError, ValueError
+        If `u` is not real or not of two components, or the method is unknown.
+
+    Notes
+    -----
+    Within 1 rounding unit of 1. About 1 ns a point and thread.
+
+    References
+    ----------
+    E. Heitz, *A low-distortion map between triangle and square*, 2019 ("fold").
+    P. Shirley, C. Wang, K. Zimmerman, *Monte Carlo techniques for direct lighting calculations*, 1996 ("root").
+
+    Examples
+    --------
+    >>> square_to_triangle([[0.5, 0.5], [0.0, 1.0]])
+    array([[0.25, 0.25],
+           [0.  , 1.  ]])
+    """
+    _arrays.choice("method", method, ("fold", "root"))
+    return _warp("u", u, 2, _kernels.square_to_triangle, 2, method)
+
+
+def triangle_to_square(barycentrics: ArrayLike, method: TriangleMethod = "fold") -> Floats:
+    """The inverse of `square_to_triangle`.
+
+    Parameters
+    ----------
+    barycentrics : array_like, shape (..., 2)
+        u, v ≥ 0 with u + v ≤ 1.
+    method : {"fold", "root"}
+        That of the map which is inverted.
+
+    Returns
+    -------
+    ndarray, shape (..., 2)
+        In [0, 1).
+
+    Raises
+    ------
+    TypeError, ValueError
+        If `barycentrics` is not real or not of two components, or the method is unknown.
+
+    Notes
+    -----
+    Back on the square within 2 rounding units of 1; "root" is singular at u = 1, where all t meet, and near it
+    returns t within a rounding unit over √s. About 1 ns a point and thread.
+
+    Examples
+    --------
+    >>> triangle_to_square([0.25, 0.25])
+    array([0.5, 0.5])
+    """
+    _arrays.choice("method", method, ("fold", "root"))
+    return _warp("barycentrics", barycentrics, 2, _kernels.triangle_to_square, 2, method)
+
+
+def square_to_triangle_pdf(barycentrics: ArrayLike) -> Floats:
+    """The density of `square_to_triangle`'s barycentrics: 2 in the triangle, 0 outside.
+
+    Parameters
+    ----------
+    barycentrics : array_like, shape (..., 2)
+
+    Returns
+    -------
+    ndarray, shape (...)
+        Of a triangle in space, the density per area is one over its area instead.
+
+    Raises
+    ------
+    TypeError, ValueError
+        If `barycentrics` is not real or not of two components.
+
+    Examples
+    --------
+    >>> square_to_triangle_pdf([[0.25, 0.25], [0.75, 0.75]])
+    array([2., 0.])
+    """
+    return _warp("barycentrics", barycentrics, 0, _kernels.square_to_triangle_pdf)
+
+
+def square_to_cosine_hemisphere(u: ArrayLike, method: DiskMethod = "concentric") -> Floats:
+    """Points of the unit square onto directions about z, in proportion to the cosine.
+
+    Parameters
+    ----------
+    u : array_like, shape (..., 2)
+        In [0, 1].
+    method : {"concentric", "polar"}
+        The disk map underneath, see `square_to_disk`.
+
+    Returns
+    -------
+    ndarray, shape (..., 3)
+        Unit directions with z ≥ 0; z = 0 only from the square's border ("polar": from u = 1).
+
+    Raises
+    ------
+    TypeError, ValueError
+        If `u` is not real or not of two components, or the method is unknown.
+
+    Notes
+    -----
+    Within 3 rounding units of 1 ("polar": 4), and z to 2 rounding units of itself down to the
+    horizon. About 10 ns a point and thread.
+
+    References
+    ----------
+    Malley's method, in P. Shirley, R. L. Morley, *Realistic Ray Tracing*, 2003.
+
+    Examples
+    --------
+    >>> square_to_cosine_hemisphere([0.5, 0.5])
+    array([0., 0., 1.])
+    """
+    _arrays.choice("method", method, ("concentric", "polar"))
+    return _warp("u", u, 3, _kernels.square_to_cosine_hemisphere, 2, method)
+
+
+def cosine_hemisphere_to_square(directions: ArrayLike, method: DiskMethod = "concentric") -> Floats:
+    """The inverse of `square_to_cosine_hemisphere`.
+
+    Parameters
+    ----------
+    directions : array_like, shape (..., 3)
+        Unit directions with z ≥ 0.
+    method : {"concentric", "polar"}
+        That of the map which is inverted.
+
+    Returns
+    -------
+    ndarray, shape (..., 2)
+        In [0, 1).
+
+    Raises
+    ------
+    TypeError, ValueError
+        If `directions` is not real or not of three components, or the method is unknown.
+
+    Notes
+    -----
+    Back on the square within 4 rounding units of 1. About 10 ns a direction and thread.
+
+    Examples
+    --------
+    >>> cosine_hemisphere_to_square([0.0, 0.0, 1.0])
+    array([0.5, 0.5])
+    """
+    _arrays.choice("method", method, ("concentric", "polar"))
+    return _warp("directions", directions, 2, _kernels.cosine_hemisphere_to_square, 3, method)
+
+
+def square_to_cosine_hemisphere_pdf(directions: ArrayLike) -> Floats:
+    """The density of `square_to_cosine_hemisphere`'s directions per solid angle: cos θ / π, 0 below the horizon.
+
+    Parameters
+    ----------
+    directions : array_like, shape (..., 3)
+        Unit directions.
+
+    Returns
+    -------
+    ndarray, shape (...)
+
+    Raises
+    ------
+    TypeError, ValueError
+        If `directions` is not real or not of three components.
+
+    Examples
+    --------
+    >>> square_to_cosine_hemisphere_pdf([[0.0, 0.0, 1.0], [0.0, 0.0, -1.0]])
+    array([0.31830989, 0.        ])
+    """
+    return _warp("directions", directions, 0, _kernels.square_to_cosine_hemisphere_pdf, 3)

@@ -1,0 +1,59 @@
+//! The unit square onto the hemisphere about z, in proportion to the cosine: the disk raised to the sphere.
+//!
+//! The height comes from the radius before it is bent, so that directions near the horizon keep their digits and none
+//! sinks below it; the square's border maps to the horizon itself, where the density is zero.
+//!
+//! Malley's method, in P. Shirley, R. L. Morley, *Realistic Ray Tracing*, 2003.
+
+use super::disk::{self, Method};
+use super::map;
+use crate::parallel::{Interrupted, Watch};
+use crate::real::Real;
+use crate::vec::Vec3;
+
+#[inline(always)]
+pub fn square_to_cosine_hemisphere<T: Real>(u: [T; 2], method: Method) -> Vec3<T> {
+    let ([x, y], depth) = disk::point_and_depth(u, method);
+    Vec3::new(x, y, depth.sqrt())
+}
+
+/// The inverse of [`square_to_cosine_hemisphere`] for unit directions above the horizon.
+#[inline(always)]
+pub fn cosine_hemisphere_to_square<T: Real>(direction: Vec3<T>, method: Method) -> [T; 2] {
+    disk::disk_to_square([direction.x, direction.y], method)
+}
+
+/// The density per solid angle of a unit direction: cos θ / π, zero below the horizon.
+#[inline(always)]
+pub fn square_to_cosine_hemisphere_pdf<T: Real>(direction: Vec3<T>) -> T {
+    if direction.z < T::zero() { T::zero() } else { direction.z / T::PI }
+}
+
+/// [`square_to_cosine_hemisphere`] over an array.
+pub fn square_to_cosine_hemisphere_many<T: Real>(
+    watch: &mut dyn Watch,
+    u: &[[T; 2]],
+    method: Method,
+    out: &mut [[T; 3]],
+) -> Result<(), Interrupted> {
+    map(watch, u, out, |u| square_to_cosine_hemisphere(u, method).to_array())
+}
+
+/// [`cosine_hemisphere_to_square`] over an array.
+pub fn cosine_hemisphere_to_square_many<T: Real>(
+    watch: &mut dyn Watch,
+    directions: &[[T; 3]],
+    method: Method,
+    out: &mut [[T; 2]],
+) -> Result<(), Interrupted> {
+    map(watch, directions, out, |d| cosine_hemisphere_to_square(d.into(), method))
+}
+
+/// [`square_to_cosine_hemisphere_pdf`] over an array.
+pub fn square_to_cosine_hemisphere_pdf_many<T: Real>(
+    watch: &mut dyn Watch,
+    directions: &[[T; 3]],
+    out: &mut [[T; 1]],
+) -> Result<(), Interrupted> {
+    map(watch, directions, out, |d| [square_to_cosine_hemisphere_pdf(d.into())])
+}

@@ -1,0 +1,111 @@
+//! The unit square onto the unit disk, areas in constant proportion.
+//!
+//! Concentric squares become concentric circles, which keeps neighbours together and strata compact; or the polar map
+//! (√u, 2πv), which tears the disk along a radius. Both reach the rim at one end of their domain and never leave
+//! the disk by more than rounding.
+//!
+//! P. Shirley, K. Chiu, *A low distortion map between disk and square*, 1997.
+
+use super::map;
+use crate::math;
+use crate::parallel::{Interrupted, Watch};
+use crate::real::Real;
+
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Method {
+    Concentric,
+    Polar,
+}
+
+/// The point of the disk, and its distance from the rim as `(1 - r)(1 + r)` before rounding can spoil it.
+#[inline(always)]
+pub(super) fn point_and_depth<T: Real>(u: [T; 2], method: Method) -> ([T; 2], T) {
+    let (one, two) = (T::one(), T::of(2.0));
+    match method {
+        Method::Concentric => {
+            // Distances from the square's border, exact near it; radius with a sign, so that a wedge and its mirror
+            // image share the formula.
+            let border = u.map(|u| two * if u > T::of(0.5) { one - u } else { u });
+            let [a, b] = [two * u[0] - one, two * u[1] - one];
+            let wide = !(border[0] >= border[1]);
+            let (r, other, depth) = if wide { (a, b, border[0]) } else { (b, a, border[1]) };
+            let ratio = if r == T::zero() { T::zero() } else { other / r };
+            let (sin, cos) = math::sin_cos(T::PI * T::of(0.25) * ratio);
+            let point = if wide { [r * cos, r * sin] } else { [r * sin, r * cos] };
+            (point, depth * (two - depth))
+        }
+        Method::Polar => {
+            // Counted from the nearer end of the turn: small angles round less.
+            let turn = if u[1] > T::of(0.5) { u[1] - one } else { u[1] };
+            let (sin, cos) = math::sin_cos(two * T::PI * turn);
+            let r = u[0].sqrt();
+            ([r * cos, r * sin], one - u[0])
+        }
+    }
+}
+
+#[inline(always)]
+pub fn square_to_disk<T: Real>(u: [T; 2], method: Method) -> [T; 2] {
+    point_and_depth(u, method).0
+}
+
+/// The inverse of [`square_to_disk`] on the disk, in [0, 1).
+#[inline(always)]
+pub fn disk_to_square<T: Real>(p: [T; 2], method: Method) -> [T; 2] {
+    let [x, y] = p;
+    let (half, one) = (T::of(0.5), T::one());
+    let squared = x * x + y * y;
+    let u = match method {
+        Method::Concentric => {
+            let wide = !(x.abs() <= y.abs());
+            let (long, short) = if wide { (x, y) } else { (y, x) };
+            let r = squared.sqrt().copysign(long);
+            // The angle from the wedge's axis, in wedges.
+            let angle = math::atan2(short * one.copysign(long), long.abs()) * T::of(4.0) / T::PI;
+            let (a, b) = if wide { (r, r * angle) } else { (r * angle, r) };
+            [half * (a + one), half * (b + one)]
+        }
+        Method::Polar => {
+            let turn = math::atan2(y, x) / (T::of(2.0) * T::PI);
+            [squared, if turn < T::zero() { turn + one } else { turn }]
+        }
+    };
+    u.map(|u| if u >= one { one.next_down() } else { u })
+}
+
+/// The density of the points, per area; the rim counts as inside even where rounding puts a point beyond it.
+#[inline(always)]
+pub fn square_to_disk_pdf<T: Real>(p: [T; 2]) -> T {
+    let squared = p[0] * p[0] + p[1] * p[1];
+    let rim = T::one() + T::of(4.0) * T::EPSILON;
+    if squared > rim { T::zero() } else { T::one() / T::PI + (squared - squared) }
+}
+
+/// [`square_to_disk`] over an array.
+pub fn square_to_disk_many<T: Real>(
+    watch: &mut dyn Watch,
+    u: &[[T; 2]],
+    method: Method,
+    out: &mut [[T; 2]],
+) -> Result<(), Interrupted> {
+    map(watch, u, out, |u| square_to_disk(u, method))
+}
+
+/// [`disk_to_square`] over an array.
+pub fn disk_to_square_many<T: Real>(
+    watch: &mut dyn Watch,
+    p: &[[T; 2]],
+    method: Method,
+    out: &mut [[T; 2]],
+) -> Result<(), Interrupted> {
+    map(watch, p, out, |p| disk_to_square(p, method))
+}
+
+/// [`square_to_disk_pdf`] over an array.
+pub fn square_to_disk_pdf_many<T: Real>(
+    watch: &mut dyn Watch,
+    p: &[[T; 2]],
+    out: &mut [[T; 1]],
+) -> Result<(), Interrupted> {
+    map(watch, p, out, |p| [square_to_disk_pdf(p)])
+}

@@ -1,0 +1,82 @@
+//! The unit square onto the triangle of barycentrics u, v ≥ 0, u + v ≤ 1, areas in constant proportion.
+//!
+//! Folding moves points by little and costs no root; the root map (1 − √s, t√s) keeps lines through one corner.
+//!
+//! E. Heitz, *A low-distortion map between triangle and square*, 2019; P. Shirley, C. Wang, K. Zimmerman, *Monte Carlo
+//! techniques for direct lighting calculations*, 1996 (roots).
+
+use super::map;
+use crate::parallel::{Interrupted, Watch};
+use crate::real::Real;
+
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Method {
+    Fold,
+    Root,
+}
+
+#[inline(always)]
+pub fn square_to_triangle<T: Real>([s, t]: [T; 2], method: Method) -> [T; 2] {
+    let half = T::of(0.5);
+    match method {
+        // Each half of the square is pushed down its diagonal's slope; both differences are free of cancellation.
+        Method::Fold if t > s => [half * s, t - half * s],
+        Method::Fold => [s - half * t, half * t],
+        Method::Root => {
+            let root = s.sqrt();
+            [T::one() - root, t * root]
+        }
+    }
+}
+
+/// The inverse of [`square_to_triangle`] on the triangle, in [0, 1).
+#[inline(always)]
+pub fn triangle_to_square<T: Real>([u, v]: [T; 2], method: Method) -> [T; 2] {
+    let (one, two) = (T::one(), T::of(2.0));
+    let square = match method {
+        Method::Fold if v > u => [two * u, u + v],
+        Method::Fold => [u + v, two * v],
+        Method::Root => {
+            let root = one - u;
+            [root * root, if root == T::zero() { T::zero() } else { v / root }]
+        }
+    };
+    square.map(|x| if x >= one { one.next_down() } else { x })
+}
+
+/// The density of the barycentrics: two in the triangle. Per area of a triangle in space it is one over its area.
+#[inline(always)]
+pub fn square_to_triangle_pdf<T: Real>([u, v]: [T; 2]) -> T {
+    let sum = u + v;
+    let outside = u < T::zero() || v < T::zero() || sum > T::one();
+    if outside { T::zero() } else { T::of(2.0) + (sum - sum) }
+}
+
+/// [`square_to_triangle`] over an array.
+pub fn square_to_triangle_many<T: Real>(
+    watch: &mut dyn Watch,
+    u: &[[T; 2]],
+    method: Method,
+    out: &mut [[T; 2]],
+) -> Result<(), Interrupted> {
+    map(watch, u, out, |u| square_to_triangle(u, method))
+}
+
+/// [`triangle_to_square`] over an array.
+pub fn triangle_to_square_many<T: Real>(
+    watch: &mut dyn Watch,
+    p: &[[T; 2]],
+    method: Method,
+    out: &mut [[T; 2]],
+) -> Result<(), Interrupted> {
+    map(watch, p, out, |p| triangle_to_square(p, method))
+}
+
+/// [`square_to_triangle_pdf`] over an array.
+pub fn square_to_triangle_pdf_many<T: Real>(
+    watch: &mut dyn Watch,
+    p: &[[T; 2]],
+    out: &mut [[T; 1]],
+) -> Result<(), Interrupted> {
+    map(watch, p, out, |p| [square_to_triangle_pdf(p)])
+}
