@@ -125,6 +125,42 @@ pub fn run(watch: &mut dyn Watch, tasks: usize, task: impl Fn(usize) + Sync) -> 
     finish(verdict)
 }
 
+/// Runs `work` on the pool, where it may fork (`rayon::join`), while the calling thread watches. `work` should look
+/// at its flag now and then, and return soon once it is set; its result is dropped then.
+pub fn run_forking<R: Send>(
+    watch: &mut dyn Watch,
+    work: impl FnOnce(&AtomicBool) -> R + Send,
+) -> Result<R, Interrupted> {
+    let stop = AtomicBool::new(false);
+    let (busy, finished) = (Mutex::new(1usize), Condvar::new());
+    let mut result = None;
+    let mut verdict = ControlFlow::Continue(());
+    pool().in_place_scope(|scope| {
+        scope.spawn(|_| {
+            let _out = CountOut(&busy, &finished);
+            result = Some(work(&stop));
+        });
+        let mut left = busy.lock().unwrap_or_else(PoisonError::into_inner);
+        while *left > 0 {
+            let (guard, wait) = finished.wait_timeout(left, TICK).unwrap_or_else(PoisonError::into_inner);
+            left = guard;
+            if wait.timed_out() && *left > 0 && verdict.is_continue() {
+                drop(left);
+                verdict = watch.tick(0, 1);
+                stop.store(verdict.is_break(), Ordering::Relaxed);
+                left = busy.lock().unwrap_or_else(PoisonError::into_inner);
+            }
+        }
+    });
+    if verdict.is_continue() {
+        verdict = watch.tick(1, 1);
+    }
+    match (finish(verdict), result) {
+        (Ok(()), Some(r)) => Ok(r),
+        _ => Err(Interrupted),
+    }
+}
+
 fn finish(verdict: ControlFlow<()>) -> Result<(), Interrupted> {
     if verdict.is_break() { Err(Interrupted) } else { Ok(()) }
 }

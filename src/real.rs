@@ -4,7 +4,7 @@
 //! scalar loop (which the compiler vectorises inside the dispatch of [`crate::simd`]) and explicit lanes alike,
 //! with the same bits, since nothing here is fused. [`Real`] is the scalar itself: `f32` or `f64`.
 
-use fearless_simd::{Select, Simd, SimdBase, SimdFloat, SimdFloatElement};
+use fearless_simd::{Select, Simd, SimdBase, SimdFloat, SimdFloatElement, SimdMask};
 use fearless_simd::{f32x4, f32x8, f32x16, f64x2, f64x4, f64x8};
 use num_traits::NumAssign;
 use std::fmt::Debug;
@@ -30,6 +30,8 @@ pub trait Lanes:
     fn equal(self, other: Self) -> Self::Mask;
     /// `a` where the mask holds, `b` elsewhere.
     fn select(mask: Self::Mask, a: Self, b: Self) -> Self;
+    /// The lanes in which the mask holds, as bits; lane 0 is the lowest.
+    fn bits(mask: Self::Mask) -> u32;
     fn copysign(self, sign: Self) -> Self;
     /// `2^n` for integral `n` in the range of normal exponents, by placing the exponent bits.
     fn exp2i(n: Self) -> Self;
@@ -134,6 +136,10 @@ macro_rules! scalar {
             #[inline(always)]
             fn select(mask: bool, a: $t, b: $t) -> $t {
                 if mask { a } else { b }
+            }
+            #[inline(always)]
+            fn bits(mask: bool) -> u32 {
+                mask as u32
             }
             #[inline(always)]
             fn copysign(self, sign: $t) -> $t {
@@ -244,6 +250,10 @@ macro_rules! vector {
             #[inline(always)]
             fn select(mask: Self::Mask, a: Self, b: Self) -> Self {
                 mask.select(a, b)
+            }
+            #[inline(always)]
+            fn bits(mask: Self::Mask) -> u32 {
+                mask.to_bitmask() as u32
             }
             #[inline(always)]
             fn copysign(self, sign: Self) -> Self {

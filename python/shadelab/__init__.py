@@ -7,16 +7,19 @@ sampling
     Generators, sequences, and warps with their densities.
 geometry
     Ray tests and barycentrics.
+accel
+    Structures for ray queries: a watertight BVH, equal to brute force to the bit.
 raster
     The pipeline: coverage, depth, interpolation, G-buffer.
 """
 
 from __future__ import annotations
 
-from . import geometry, raster, sampling
+from . import accel, geometry, raster, sampling
 from ._runtime import set_threads, simd, simd_level, simd_levels, threads
 
 __all__ = [
+    "accel",
     "geometry",
     "raster",
     "sampling",

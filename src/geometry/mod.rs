@@ -2,5 +2,7 @@
 //! their precision, and says where it is exact.
 //!
 //! - [`barycentric`]: coordinates of points in triangles
+//! - [`ray_triangle`]: a ray against a triangle: watertight, Möller-Trumbore, plane
 
 pub mod barycentric;
+pub mod ray_triangle;

@@ -1,0 +1,174 @@
+//! The layout of the tree: nodes of eight boxes, leaves of blocks of four triangles, and the traversal stack.
+
+use crate::real::Real;
+use std::mem::MaybeUninit;
+
+/// The width of a node.
+pub const WIDTH: usize = 8;
+/// Triangles in a block.
+pub const BLOCK: usize = 4;
+/// Deepest level of a tree; the builder keeps to it.
+pub const MAX_DEPTH: usize = 72;
+/// At each level all children but one wait.
+const STACK: usize = MAX_DEPTH * (WIDTH - 1) + 1;
+
+/// What a child slot refers to: a node, a run of blocks, or nothing.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[repr(transparent)]
+pub struct Child(pub u32);
+
+impl Child {
+    const LEAF: u32 = 1 << 31;
+    const COUNT_SHIFT: u32 = 27;
+    pub const EMPTY: Child = Child(u32::MAX);
+    pub const ROOT: Child = Child(0);
+    /// Blocks that a tree can hold, and that a leaf can.
+    pub const MAX_BLOCKS: usize = 1 << Self::COUNT_SHIFT;
+    pub const MAX_RUN: usize = 15;
+
+    pub fn node(index: usize) -> Self {
+        Child(index as u32)
+    }
+    pub fn leaf(first: usize, blocks: usize) -> Self {
+        debug_assert!((1..=Self::MAX_RUN).contains(&blocks) && first + blocks <= Self::MAX_BLOCKS);
+        Child(Self::LEAF | (blocks as u32) << Self::COUNT_SHIFT | first as u32)
+    }
+    #[inline(always)]
+    pub fn is_leaf(self) -> bool {
+        self.0 & Self::LEAF != 0
+    }
+    #[inline(always)]
+    pub fn index(self) -> usize {
+        self.0 as usize
+    }
+    /// First block and number of blocks.
+    #[inline(always)]
+    pub fn run(self) -> (usize, usize) {
+        ((self.0 & ((1 << Self::COUNT_SHIFT) - 1)) as usize, (self.0 >> Self::COUNT_SHIFT & 15) as usize)
+    }
+}
+
+/// Eight boxes. Empty slots have their planes at infinity the wrong way round, which no ray passes.
+#[derive(Clone, Copy, Debug)]
+#[repr(C, align(64))]
+pub struct Node<T> {
+    /// `[lower, upper][axis][child]`.
+    pub planes: [[[T; WIDTH]; 3]; 2],
+    pub children: [Child; WIDTH],
+}
+
+impl<T: Real> Node<T> {
+    pub fn empty() -> Self {
+        Node {
+            planes: [[[T::INFINITY; WIDTH]; 3], [[-T::INFINITY; WIDTH]; 3]],
+            children: [Child::EMPTY; WIDTH],
+        }
+    }
+}
+
+/// Four triangles. Empty lanes hold NaN, which no comparison accepts, and face -1.
+#[derive(Clone, Copy, Debug)]
+#[repr(C, align(32))]
+pub struct Block<T> {
+    /// `[vertex][axis][triangle]`.
+    pub vertices: [[[T; BLOCK]; 3]; 3],
+    pub faces: [i32; BLOCK],
+}
+
+impl<T: Real> Block<T> {
+    /// From at most four faces and their corners.
+    pub fn new(triangles: impl Iterator<Item = (i32, [[T; 3]; 3])>) -> Self {
+        let mut block = Block { vertices: [[[T::NAN; BLOCK]; 3]; 3], faces: [-1; BLOCK] };
+        for (lane, (face, corners)) in triangles.enumerate() {
+            block.faces[lane] = face;
+            for (vertex, p) in corners.iter().enumerate() {
+                for k in 0..3 {
+                    block.vertices[vertex][k][lane] = p[k];
+                }
+            }
+        }
+        block
+    }
+}
+
+/// A waiting child with the place where the ray enters it, as one number: nearest is least.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+#[repr(transparent)]
+pub struct Entry(u64);
+
+impl Entry {
+    #[inline(always)]
+    pub fn new<T: Real>(t: T, child: Child) -> Self {
+        Entry((key(t) as u64) << 32 | child.0 as u64)
+    }
+    #[inline(always)]
+    pub fn child(self) -> Child {
+        Child(self.0 as u32)
+    }
+    /// Whether it is entered after a `t` of this [`key`].
+    #[inline(always)]
+    pub fn after(self, key: u32) -> bool {
+        (self.0 >> 32) as u32 > key
+    }
+}
+
+/// An integer in the order of `t`, from zero on. Rounding to single precision keeps the order, as ties.
+#[inline(always)]
+pub fn key<T: Real>(t: T) -> u32 {
+    let t = t.to_f64() as f32;
+    if t > 0.0 { t.to_bits() } else { 0 }
+}
+
+/// Children that wait, the nearest on top.
+pub struct Stack {
+    entries: [MaybeUninit<Entry>; STACK],
+    len: usize,
+}
+
+impl Stack {
+    #[inline(always)]
+    #[allow(clippy::new_without_default)]
+    pub fn new() -> Self {
+        Stack { entries: [MaybeUninit::uninit(); STACK], len: 0 }
+    }
+    #[inline(always)]
+    pub fn len(&self) -> usize {
+        self.len
+    }
+    #[inline(always)]
+    pub fn clear(&mut self) {
+        self.len = 0;
+    }
+    #[inline(always)]
+    pub fn push(&mut self, e: Entry) {
+        debug_assert!(self.len < STACK);
+        // Sound: traversal replaces one entry by at most WIDTH children a level, and no tree is deeper than MAX_DEPTH.
+        unsafe { self.entries.get_unchecked_mut(self.len).write(e) };
+        self.len += 1;
+    }
+    #[inline(always)]
+    pub fn pop(&mut self) -> Option<Entry> {
+        if self.len == 0 {
+            return None;
+        }
+        self.len -= 1;
+        // Sound: every entry below `len` was written by `push` or `insert`.
+        Some(unsafe { self.entries.get_unchecked(self.len).assume_init() })
+    }
+    /// Puts `e` among the entries from `base` on, which are in falling order.
+    #[inline(always)]
+    pub fn insert(&mut self, base: usize, e: Entry) {
+        let mut at = self.len;
+        self.push(e);
+        while at > base {
+            // Sound: `at` is within what was pushed.
+            let below = unsafe { self.entries.get_unchecked(at - 1).assume_init() };
+            if below >= e {
+                break;
+            }
+            unsafe { self.entries.get_unchecked_mut(at).write(below) };
+            at -= 1;
+        }
+        unsafe { self.entries.get_unchecked_mut(at).write(e) };
+    }
+}

@@ -1,0 +1,125 @@
+"""The tree returns brute force's answer to the bit, whatever the rays, levels and threads; and contains bad rays."""
+
+import numpy as np
+import pytest
+import shadelab as sl
+
+
+def soup(rng, n, dtype, size=0.2, offset=0.0):
+    """Triangles of about `size` with centres in a unit cloud."""
+    centres = rng.normal(size=(n, 1, 3))
+    p = (centres + size * rng.normal(size=(n, 3, 3)) + offset).reshape(-1, 3)
+    return p.astype(dtype), np.arange(3 * n).reshape(-1, 3)
+
+
+def same_bits(a, b):
+    return all(np.array_equal(x.view(np.uint8), y.view(np.uint8)) for x, y in zip(a[:4], b[:4], strict=True))
+
+
+def rays_of(kind, rng, n):
+    o = rng.normal(size=(n, 3))
+    if kind == "axis-parallel":
+        d = np.eye(3)[rng.integers(3, size=n)] * rng.choice([-1, 1], (n, 1))
+    elif kind == "coherent":
+        x, y = np.meshgrid(np.linspace(-1, 1, n // 32), np.linspace(-1, 1, 32))
+        d = np.stack([x, y, -3 * np.ones_like(x)], -1).reshape(-1, 3)
+        o = np.broadcast_to([0.1, 0.2, 4.0], d.shape)
+    else:
+        d = rng.normal(size=(n, 3)) * {"random": 1.0, "tiny": 1e-20, "huge": 1e20}[kind]
+    return o[: len(d)], d
+
+
+@pytest.mark.parametrize("dtype", [np.float32, np.float64])
+@pytest.mark.parametrize("kind", ["random", "axis-parallel", "coherent", "tiny", "huge"])
+@pytest.mark.parametrize("level", sl.simd_levels())
+def test_tree_equals_brute_force_to_the_bit(dtype, kind, level):
+    rng = np.random.default_rng(3)
+    p, f = soup(rng, 700, dtype)
+    o, d = rays_of(kind, rng, 4096)
+    expected = sl.accel.brute_force(p, f, o, d)
+    bvh = sl.accel.BVH(p, f)
+    with sl.simd(level):
+        hit = bvh.closest_hit(o, d)
+        assert same_bits(hit, expected)
+        assert np.array_equal(bvh.any_hit(o, d), expected.face >= 0)
+    assert 0.05 < (expected.face >= 0).mean() < 1
+
+
+@pytest.mark.parametrize("dtype", [np.float32, np.float64])
+def test_intervals_are_open_and_ignored_faces_are_not_met(dtype):
+    rng = np.random.default_rng(4)
+    p, f = soup(rng, 500, dtype)
+    o, d = rng.normal(size=(2, 3000, 3))
+    bvh = sl.accel.BVH(p, f)
+    first = bvh.closest_hit(o, d)
+    assert not bvh.any_hit(o, d, t_max=first.t).any()
+    for limits in [{"t_min": first.t}, {"ignore_face": first.face}, {"t_min": 0.5, "t_max": rng.uniform(size=3000)}]:
+        second = bvh.closest_hit(o, d, **limits)
+        assert same_bits(second, sl.accel.brute_force(p, f, o, d, **limits))
+        assert (second.face[first.face >= 0] != first.face[first.face >= 0]).all() or "t_max" in limits
+
+
+def test_what_is_no_ray_gives_nan_and_touches_no_other():
+    rng = np.random.default_rng(5)
+    p, f = soup(rng, 300, np.float32)
+    o, d = rng.normal(size=(2, 1000, 3)).astype(np.float32)
+    bvh = sl.accel.BVH(p, f)
+    clean = bvh.closest_hit(o, d)
+    bad = np.arange(0, 1000, 7)
+    o[bad[0::4], 1], d[bad[1::4], 2], d[bad[2::4]], o[bad[3::4], 0] = np.nan, np.inf, 0, -np.inf
+    hit = bvh.closest_hit(o, d)
+    assert np.isnan(hit.t[bad]).all() and (hit.face[bad] == -1).all() and not bvh.any_hit(o, d)[bad].any()
+    good = np.setdiff1d(np.arange(1000), bad)
+    assert np.array_equal(hit.t[good], clean.t[good]) and np.array_equal(hit.face[good], clean.face[good])
+
+
+@pytest.mark.parametrize("dtype", [np.float32, np.float64])
+def test_empty_mesh_and_no_rays(dtype):
+    empty = sl.accel.BVH(np.zeros((0, 3), dtype), [])
+    hit = empty.closest_hit(np.zeros((2, 5, 3)), [1, 0, 0])
+    assert hit.t.shape == (2, 5) and np.isinf(hit.t).all() and (hit.face == -1).all()
+    p, f = soup(np.random.default_rng(0), 1, dtype)
+    assert sl.accel.BVH(p, f).closest_hit(np.zeros((0, 3)), [1, 0, 0]).t.shape == (0,)
+
+
+def test_bad_meshes_name_what_is_wrong():
+    p = np.zeros((4, 3))
+    with pytest.raises(ValueError, match=r"faces: index 4 at \(1, 2\) is out of range \[0, 4\)"):
+        sl.accel.BVH(p, [[0, 1, 2], [0, 1, 4]])
+    p[2, 1] = np.nan
+    with pytest.raises(ValueError, match="positions: vertex 2 is not finite"):
+        sl.accel.BVH(p, [[0, 1, 3]])
+    with pytest.raises(ValueError, match=r"directions: expected shape \(\.\.\., 3\), got \(7, 2\)"):
+        sl.accel.BVH(np.zeros((4, 3)), [[0, 1, 3]]).closest_hit([0, 0, 0], np.zeros((7, 2)))
+
+
+@pytest.mark.parametrize("dtype", [np.float32, np.float64])
+def test_equal_hits_go_to_the_lowest_face(dtype):
+    rng = np.random.default_rng(6)
+    p, f = soup(rng, 50, dtype, size=1.0)
+    many = np.concatenate([np.roll(f, k, 0) for k in range(40)])
+    o, d = rng.normal(size=(2, 2000, 3))
+    hit = sl.accel.BVH(p, many).closest_hit(o, d)
+    assert same_bits(hit, sl.accel.brute_force(p, many, o, d)) and hit.face.max() < 50
+
+
+def test_answers_do_not_depend_on_threads():
+    rng = np.random.default_rng(7)
+    p, f = soup(rng, 40000, np.float32, 0.05)
+    o, d = rng.normal(size=(2, 20000, 3))
+    results = []
+    for threads in (1, 2, 5):
+        sl.set_threads(threads)
+        bvh = sl.accel.BVH(p, f)
+        results.append((bvh.stats(), bvh.closest_hit(o, d)))
+    sl.set_threads(None)
+    assert all(s == results[0][0] and same_bits(h, results[0][1]) for s, h in results)
+
+
+def test_out_is_written_and_normals_follow_the_winding():
+    p, f = np.array([[0, 0, 0], [2, 0, 0], [0, 2, 0.0]]), [[0, 1, 2]]
+    bvh = sl.accel.BVH(p, f)
+    first = bvh.closest_hit([[0.5, 0.5, 3], [5, 5, 5]], [0, 0, -1], normals=True)
+    assert np.array_equal(first.normal, [[0, 0, 1], [np.nan] * 3], equal_nan=True)
+    again = bvh.closest_hit([[0.5, 0.5, 1], [5, 5, 5]], [0, 0, -1], normals=True, out=first)
+    assert again.t is first.t and first.t[0] == 1
