@@ -9,17 +9,20 @@ geometry
     Ray tests and barycentrics.
 accel
     Structures for ray queries: a watertight BVH, equal to brute force to the bit.
+brdf
+    Reflection models: evaluation, sampling, density.
 raster
     The pipeline: coverage, depth, interpolation, G-buffer.
 """
 
 from __future__ import annotations
 
-from . import accel, geometry, raster, sampling
+from . import accel, brdf, geometry, raster, sampling
 from ._runtime import set_threads, simd, simd_level, simd_levels, threads
 
 __all__ = [
     "accel",
+    "brdf",
     "geometry",
     "raster",
     "sampling",
