@@ -1,0 +1,200 @@
+"""The front drawn: error against time, by matplotlib for notebooks, as inline SVG for the page."""
+
+from __future__ import annotations
+
+import html
+import io
+import math
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Any
+
+from .records import Choice, Summary
+from .tables import figure_text
+
+if TYPE_CHECKING:
+    from matplotlib.figure import Figure
+
+    from .results import Study
+
+__all__ = ["COLORS", "figure", "svg"]
+
+COLORS = ("#0072b2", "#d55e00", "#009e73", "#cc79a7", "#b8860b", "#56b4e9", "#7a5195", "#666666")
+"""After Okabe and Ito, told apart with every kind of colour vision; markers differ too."""
+
+MARKERS = ("o", "s", "^", "D", "v", "P", "X", "*")
+
+
+@dataclass(frozen=True)
+class _Point:
+    """A setting in the plane of time and error; `floor` marks an error too small to be seen, drawn at the bottom."""
+
+    summary: Summary
+    on_front: bool
+    technique: int
+    ms: float
+    error: float
+    low: float
+    high: float
+
+
+def _points(study: Study) -> tuple[list[_Point], list[str]]:
+    """The points of all settings that can be drawn, and the techniques in order of their appearance."""
+    front = {s.setting for s in study.front()}
+    able = [s for s in study.summaries() if s.error.known and s.ms.known and s.ms.value > 0]
+    techniques = list(dict.fromkeys(r.technique for r in study.records))
+    seen = [s.error.value for s in able if s.error.value > 0]
+    floor = min(seen, default=1e-3) / 3
+    return [
+        _Point(
+            s,
+            s.setting in front,
+            techniques.index(s.technique),
+            s.ms.value,
+            max(s.error.value, floor),
+            max(s.error.low, floor),
+            max(s.error.high, floor),
+        )
+        for s in able
+    ], techniques
+
+
+def _stairs(points: list[_Point]) -> list[tuple[float, float]]:
+    """The line of what one can have: at each time, the least error of the front so far."""
+    line: list[tuple[float, float]] = []
+    best = math.inf
+    for p in sorted((p for p in points if p.on_front), key=lambda p: p.ms):
+        if p.error < best:
+            if line:
+                line.append((p.ms, best))
+            best = p.error
+            line.append((p.ms, best))
+    return line
+
+
+def _labels(study: Study) -> tuple[str, str]:
+    where = f", worst of {len(study.cases)} cases" if len(study.cases) > 1 else ""
+    unit = f" ({study.metric['unit']})" if study.metric["unit"] else ""
+    return f"milliseconds a frame{where}", f"{study.metric['name']}{unit}{where}"
+
+
+def figure(study: Study) -> Figure:
+    """A matplotlib figure of the front, made without pyplot, so that no state is left behind."""
+    try:
+        from matplotlib.figure import Figure
+    except ImportError as error:
+        raise ImportError("plot needs matplotlib: pip install 'shadelab[study]'") from error
+
+    class Front(Figure):
+        """A figure that shows itself in Jupyter without pyplot."""
+
+        def _repr_png_(self) -> bytes:
+            file = io.BytesIO()
+            self.savefig(file, format="png", dpi=110)
+            return file.getvalue()
+
+    points, techniques = _points(study)
+    made = Front(figsize=(8, 5), layout="constrained")
+    axes = made.subplots()
+    line = _stairs(points)
+    axes.plot([x for x, _ in line], [y for _, y in line], color="0.6", linewidth=1, zorder=1)
+    for i, technique in enumerate(techniques):
+        own = [p for p in points if p.technique == i]
+        color, marker = COLORS[i % len(COLORS)], MARKERS[i % len(MARKERS)]
+        for p in own:
+            dim = 1.0 if p.on_front else 0.35
+            spans: dict[str, Any] = {
+                "xerr": [[p.ms - p.summary.ms.low], [p.summary.ms.high - p.ms]],
+                "yerr": [[p.error - p.low], [p.high - p.error]],
+            }
+            axes.errorbar([p.ms], [p.error], **spans, fmt=marker, color=color, alpha=dim, markersize=6, elinewidth=0.8)
+        if own:
+            axes.plot([], [], marker, color=color, label=technique)
+    if points:
+        axes.set_xscale("log")
+        axes.set_yscale("log")
+        axes.legend()
+    x, y = _labels(study)
+    axes.set_xlabel(x)
+    axes.set_ylabel(y)
+    axes.set_title(f"{study.question}: error against time ({study.mask['name']})", fontsize="medium")
+    axes.grid(alpha=0.2, which="both")
+    return made
+
+
+class _Axis:
+    """A logarithmic axis between two pixels."""
+
+    def __init__(self, values: list[float], start: float, end: float) -> None:
+        low, high = min(values), max(values)
+        room = max(math.log10(high / low) * 0.08, 0.08)
+        self.low, self.high = math.log10(low) - room, math.log10(high) + room
+        self.start, self.end = start, end
+
+    def __call__(self, value: float) -> float:
+        t = (math.log10(value) - self.low) / (self.high - self.low)
+        return self.start + min(max(t, 0.0), 1.0) * (self.end - self.start)
+
+    def ticks(self) -> list[float]:
+        """Powers of ten, with 2 and 5 between where there are few."""
+        few = self.high - self.low < 2.5
+        steps = (1, 2, 5) if few else (1,)
+        decades = range(math.floor(self.low), math.ceil(self.high) + 1)
+        return [m * 10.0**e for e in decades for m in steps if self.low <= math.log10(m * 10.0**e) <= self.high]
+
+
+def svg(study: Study, width: int, height: int, choice: Choice | None = None) -> str:
+    """The front as SVG that takes its colours from the page's (light or dark), text in the page's own size."""
+    points, techniques = _points(study)
+    if not points:
+        return ""
+    left, right, top, bottom = 58, 12, 12, 44
+    x = _Axis([v for p in points for v in (p.summary.ms.low, p.summary.ms.high)], left, width - right)
+    y = _Axis([v for p in points for v in (p.low, p.high)], height - bottom, top)
+    out = [f'<svg class="chart" viewBox="0 0 {width} {height}" width="{width}" role="img" aria-label="error and time">']
+    for v in x.ticks():
+        out.append(f'<line class="grid" x1="{x(v):.1f}" x2="{x(v):.1f}" y1="{top}" y2="{height - bottom}"/>')
+        out.append(f'<text x="{x(v):.1f}" y="{height - bottom + 16}" text-anchor="middle">{v:g}</text>')
+    for v in y.ticks():
+        out.append(f'<line class="grid" x1="{left}" x2="{width - right}" y1="{y(v):.1f}" y2="{y(v):.1f}"/>')
+        out.append(f'<text x="{left - 6}" y="{y(v) + 4:.1f}" text-anchor="end">{v:g}</text>')
+    x_label, _ = _labels(study)
+    out.append(f'<text x="{(left + width - right) / 2}" y="{height - 8}" text-anchor="middle">{x_label}</text>')
+    middle = (top + height - bottom) / 2
+    out.append(f'<text x="14" y="{middle}" text-anchor="middle" transform="rotate(-90 14 {middle})">error</text>')
+    line = " ".join(f"{x(a):.1f},{y(b):.1f}" for a, b in _stairs(points))
+    out.append(f'<polyline class="front" points="{line}"/>')
+    for p in sorted(points, key=lambda p: p.on_front):
+        out.append(_mark(p, techniques, x, y, choice))
+    out.append("</svg>")
+    return "".join(out)
+
+
+def _mark(p: _Point, techniques: list[str], x: _Axis, y: _Axis, choice: Choice | None) -> str:
+    """A point with its intervals, a shape for its technique, and a title that a pointer shows."""
+    color = COLORS[p.technique % len(COLORS)]
+    s, px, py = p.summary, x(p.ms), y(p.error)
+    title = f"{s.setting}: error {figure_text(s.error.value)}, {figure_text(s.ms.value)} ms"
+    bars = (
+        f'<path d="M{x(s.ms.low):.1f} {py:.1f}H{x(s.ms.high):.1f}M{px:.1f} {y(p.low):.1f}V{y(p.high):.1f}" '
+        f'stroke="{color}" fill="none"/>'
+    )
+    ring = ""
+    if choice is not None and choice.setting == s.setting:
+        ring = f'<circle cx="{px:.1f}" cy="{py:.1f}" r="11" fill="none" stroke="currentColor" stroke-width="2"/>'
+    shape = marker_path(p.technique, px, py)
+    dim = "" if p.on_front else ' opacity="0.35"'
+    return f'<g{dim}><title>{html.escape(title)}</title>{bars}<path d="{shape}" fill="{color}"/>{ring}</g>'
+
+
+def marker_path(technique: int, x: float, y: float, r: float = 5.5) -> str:
+    """The outline of a technique's marker."""
+    kind = technique % len(MARKERS)
+    if kind == 0:
+        return f"M{x - r:.1f} {y:.1f}a{r} {r} 0 1 0 {2 * r} 0a{r} {r} 0 1 0 {-2 * r} 0z"
+    sides, turn = ((4, 45), (3, -90), (4, 0), (3, 90), (6, 0), (5, -90), (8, 0))[kind - 1]
+    corners = [
+        (x + 1.2 * r * math.cos(math.radians(turn + 360 * i / sides)),
+         y + 1.2 * r * math.sin(math.radians(turn + 360 * i / sides)))
+        for i in range(sides)
+    ]  # fmt: skip
+    return "M" + "L".join(f"{a:.1f} {b:.1f}" for a, b in corners) + "z"

@@ -1,0 +1,31 @@
+"""The questions that shadelab asks of itself: one file each, found by its name; `question()` in it makes it."""
+
+from __future__ import annotations
+
+import importlib
+import pkgutil
+
+from ..question import Question
+
+__all__ = ["find", "questions"]
+
+
+def questions() -> list[str]:
+    """The names of all questions, as `run` and the command line take them."""
+    return sorted(m.name.replace("_", " ") for m in pkgutil.iter_modules(__path__))
+
+
+def find(name: str) -> Question:
+    """A question by its name; spaces, hyphens and underscores are one.
+
+    Raises
+    ------
+    ValueError
+        If there is none of that name.
+    """
+    plain = name.strip().lower().replace("-", " ").replace("_", " ")
+    if plain not in questions():
+        raise ValueError(f"question: expected one of {', '.join(map(repr, questions()))}, got {name!r}")
+    module = importlib.import_module(f"{__name__}.{plain.replace(' ', '_')}")
+    made: Question = module.question()
+    return made
