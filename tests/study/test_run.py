@@ -126,7 +126,7 @@ def test_wrong_candidates_are_named():
         study.run(toy.question(), candidates=[Candidate("flat", lambda inputs, _: np.zeros(3))], **FAST)
     with pytest.raises(TypeError, match="candidates: expected a Candidate"):
         study.run(toy.question(), candidates=[3], **FAST)
-    with pytest.raises(ValueError, match=r"question: expected one of .*'soft shadows'"):
+    with pytest.raises(ValueError, match="question: expected one of"):
         study.run("hard shadows")
 
 

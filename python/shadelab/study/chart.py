@@ -144,7 +144,7 @@ class _Axis:
 
 def svg(study: Study, width: int, height: int, choice: Choice | None = None) -> str:
     """The front as SVG that takes its colours from the page's (light or dark), text in the page's own size."""
-    points, techniques = _points(study)
+    points, _ = _points(study)
     if not points:
         return ""
     left, right, top, bottom = 58, 12, 12, 44
@@ -164,12 +164,31 @@ def svg(study: Study, width: int, height: int, choice: Choice | None = None) -> 
     line = " ".join(f"{x(a):.1f},{y(b):.1f}" for a, b in _stairs(points))
     out.append(f'<polyline class="front" points="{line}"/>')
     for p in sorted(points, key=lambda p: p.on_front):
-        out.append(_mark(p, techniques, x, y, choice))
+        out.append(_mark(p, x, y, choice))
+    out += _names(points, x, y, width - right)
     out.append("</svg>")
     return "".join(out)
 
 
-def _mark(p: _Point, techniques: list[str], x: _Axis, y: _Axis, choice: Choice | None) -> str:
+def _names(points: list[_Point], x: _Axis, y: _Axis, end: float) -> list[str]:
+    """The knobs of those on the front beside their points, where there is room for them."""
+    taken = [(x(p.ms) - 7, y(p.error) - 7, x(p.ms) + 7, y(p.error) + 7) for p in points]
+    out = []
+    for p in sorted((p for p in points if p.on_front), key=lambda p: p.error):
+        text = ", ".join(figure_text(v) if isinstance(v, float) else str(v) for v in p.summary.knobs.values())
+        wide = 6.6 * len(text)
+        for dx, dy in ((10, -7), (10, 15), (-10 - wide, 15), (-10 - wide, -7)):
+            left, base = x(p.ms) + dx, y(p.error) + dy
+            box = (left, base - 11, left + wide, base + 2)
+            free = all(box[2] < a or box[0] > c or box[3] < b or box[1] > d for a, b, c, d in taken)
+            if text and free and x.start < box[0] and box[2] < end and y.end < box[1] and box[3] < y.start:
+                taken.append(box)
+                out.append(f'<text class="name" x="{left:.1f}" y="{base:.1f}">{html.escape(text)}</text>')
+                break
+    return out
+
+
+def _mark(p: _Point, x: _Axis, y: _Axis, choice: Choice | None) -> str:
     """A point with its intervals, a shape for its technique, and a title that a pointer shows."""
     color = COLORS[p.technique % len(COLORS)]
     s, px, py = p.summary, x(p.ms), y(p.error)

@@ -34,6 +34,7 @@ nav a{margin-right:1em}
 a{color:inherit}
 .chart{max-width:100%;height:auto;font-size:13px}
 .chart text{fill:var(--ink)}
+.chart .name{font-size:11px;fill:var(--soft)}
 .chart .grid{stroke:var(--line)}
 .chart .front{fill:none;stroke:var(--soft);stroke-width:1.5}
 .narrow{display:none}
@@ -52,7 +53,7 @@ dd{margin:0;overflow-wrap:anywhere;max-width:80ch}
 table.plain{border-collapse:collapse;font-size:.9em}
 table.plain th,table.plain td{padding:.25em .7em .25em 0;text-align:left;border-bottom:1px solid var(--line)}
 pre{overflow-x:auto;background:var(--box);padding:.8em;font-size:.85em}
-@media (max-width:720px){
+@media screen and (max-width:720px){
 .wide{display:none}.narrow{display:block}
 .strip{grid-template-columns:1fr 1fr}
 .strip figure:first-child{grid-column:1/-1}
@@ -127,7 +128,8 @@ def _front(study: Study, choice: Choice | None) -> str:
     return (
         '<h2 id="front">Error against time</h2>'
         f"<p>{_text(study.metric['name'])}, over {_text(study.mask['name'])}{worst}. Left and low is better. Bars are "
-        f"95 % intervals; pale settings are beaten by another beyond confidence in both.{ring}</p>"
+        f"95 % intervals; pale settings are beaten by another beyond confidence in both; beside the others stand their "
+        f"knobs.{ring}</p>"
         f'<div class="wide">{chart.svg(study, 1000, 520, choice)}</div>'
         f'<div class="narrow">{chart.svg(study, 380, 380, choice)}</div>'
         f'<div class="legend">{legend}</div>'
@@ -221,13 +223,13 @@ def _measured(study: Study) -> str:
     return (
         '<h2 id="measured">How it was measured</h2>'
         f"<p>At {size} pixels, seed {_text(s['seed'])}. After one run that is not counted, all settings of a case "
-        f"are timed in turn, up to {s['rounds']} rounds in changing order; a setting that has used {s['patience']:g} s is "
-        "left alone after three. Time is the median with its interval between order statistics (95 % from six rounds "
-        "on).</p><p>Errors are taken against two independent halves A and B of the reference: the mean of (x − A)(x − B) "
-        "is the squared error free of the reference's noise. The reference is refined until its own error is "
-        f"{s['fraction']:g} of the smallest error that it judges, or its {s['reference_seconds']:g} s run out. "
-        "Intervals of errors are a bootstrap over tiles of the picture; two settings are compared on the same draws. "
-        "A bound is kept only if the upper end of the interval keeps it, in the worst case.</p>"
+        f"are timed in turn, up to {s['rounds']} rounds in changing order; a setting that has used {s['patience']:g} s "
+        "is left alone after three. Time is the median with its interval between order statistics (95 % from six "
+        "rounds on).</p><p>Errors are taken against two independent halves A and B of the reference: the mean of "
+        "(x − A)(x − B) is the squared error free of the reference's noise. The reference is refined until its own "
+        f"error is {s['fraction']:g} of the smallest error that it judges, or its {s['reference_seconds']:g} s run "
+        "out. Intervals of errors are a bootstrap over tiles of the picture; two settings are compared on the same "
+        "draws. A bound is kept only if the upper end of the interval keeps it, in the worst case.</p>"
         '<div class="scroll"><table class="plain"><tr><th>case</th><th>mask</th><th>reference</th></tr>'
         f"{rows}</table></div>"
     )

@@ -127,7 +127,7 @@ class Summary:
     """One setting over all the cases that it was measured in: the worst of each figure, and where.
 
     `error` and `ms` are the worst over scenes and views; `best_error` is the least, `frame_error` the worst over a
-    whole frame; `error_case` and `ms_case` say where the worst was met. `cases` is how many cases it was measured in, and
+    whole frame; `error_case` and `ms_case` say where the worst was met. `cases` is how many it was measured in, and
     `complete` whether that is all.
     """
 

@@ -87,7 +87,7 @@ def _chosen(
 ) -> list[str]:
     """The columns of one part of the table, or all."""
     if part == "cost":
-        return [*error, *where, *times, *counters]
+        return [error[0], times[0], error[1], *where, *times[1:], *counters]
     if part == "cause":
         return [error[0], *least, *causes, *also]
     return [*error, *least, *where, *causes, *also, *times, *counters]
