@@ -13,12 +13,19 @@ brdf
     Reflection models: evaluation, sampling, density.
 raster
     The pipeline: coverage, depth, interpolation, G-buffer.
+study
+    What each technique costs and what it loses: questions, fronts, reports, stability.
 """
 
 from __future__ import annotations
 
+from typing import TYPE_CHECKING, Any
+
 from . import accel, brdf, geometry, raster, sampling
 from ._runtime import set_threads, simd, simd_level, simd_levels, threads
+
+if TYPE_CHECKING:
+    from . import study
 
 __all__ = [
     "accel",
@@ -30,5 +37,15 @@ __all__ = [
     "simd",
     "simd_level",
     "simd_levels",
+    "study",
     "threads",
 ]
+
+
+def __getattr__(name: str) -> Any:
+    """`study` is imported when it is first asked for: most of what imports shadelab measures nothing."""
+    if name == "study":
+        import importlib
+
+        return importlib.import_module(".study", __name__)
+    raise AttributeError(f"module {__name__!r} has no attribute {name!r}")

@@ -51,8 +51,10 @@ def listing(names: Iterable[str]) -> str:
     for chapter in names:
         about = (importlib.import_module(f"shadelab.{chapter}").__doc__ or "").split("\n\n", 1)[0]
         lines.append(f"{chapter}: {' '.join(about.split())}")
-        for name, summary, sources in techniques(chapter):
-            lines.append(f"  {name:24} {summary}")
-            lines += [f"  {'':24}   {source}" for source in sources]
+        found = techniques(chapter)
+        width = max((len(name) for name, _, _ in found), default=0)
+        for name, summary, sources in found:
+            lines.append(f"  {name:{width}}  {summary}")
+            lines += [f"  {'':{width}}    {source}" for source in sources]
         lines.append("")
     return "\n".join(lines).rstrip()

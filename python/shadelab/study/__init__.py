@@ -12,6 +12,7 @@ file in `questions/`; `stability` is the table of accuracy at the extremes.
 
 from __future__ import annotations
 
+from . import stability
 from .measure import run
 from .question import Candidate, Case, External, Mask, Metric, MonteCarlo, Question
 from .questions import find, questions
@@ -34,4 +35,5 @@ __all__ = [
     "find",
     "questions",
     "run",
+    "stability",
 ]
