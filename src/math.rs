@@ -168,7 +168,7 @@ pub fn exp<V: Lanes>(x: V) -> V {
 #[inline(always)]
 fn split_positive<V: Lanes>(x: V) -> (V, V) {
     let tiny = x.less(x.like(V::Elem::MIN_POSITIVE));
-    let (m, e) = V::select(tiny, x * x.num(54f64.exp2()), x).split_exponent();
+    let (m, e) = V::select(tiny, x * x.num((1u64 << 54) as f64), x).split_exponent();
     (m, V::select(tiny, e - x.num(54.0), e))
 }
 

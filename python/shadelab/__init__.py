@@ -3,6 +3,8 @@
 Every technique of the real-time renderer is a function over arrays and stands beside the exact reference that it
 approximates; `shadelab.study` measures what each costs and what it loses. Chapters, from the ground up:
 
+transform
+    Model, view, projection, viewport; points through them.
 sampling
     Generators, sequences, and warps with their densities.
 geometry
@@ -21,7 +23,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, Any
 
-from . import accel, brdf, geometry, raster, sampling
+from . import accel, brdf, geometry, raster, sampling, transform
 from ._runtime import set_threads, simd, simd_level, simd_levels, threads
 
 if TYPE_CHECKING:
@@ -39,6 +41,7 @@ __all__ = [
     "simd_levels",
     "study",
     "threads",
+    "transform",
 ]
 
 

@@ -65,7 +65,7 @@ pub fn pow<V: Lanes>(x: V, y: V) -> V {
     let infinity = x.like(V::Elem::INFINITY);
     let a = x.abs();
     // Exponents this large overflow or vanish for every base but one, whose logarithm is zero.
-    let limit = y.num(if V::Elem::DOUBLE { 66f64.exp2() } else { 34f64.exp2() });
+    let limit = either(y, (1u64 << 34) as f64, (1u64 << 63) as f64);
     let exponent = limit.min((-limit).max(y));
     let (h, l) = ln_extended(a);
     let (p, pe) = two_product(exponent, h);

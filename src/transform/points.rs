@@ -1,0 +1,154 @@
+//! Points, vectors and normals through matrices, to pixels and back.
+//!
+//! One matrix serves a whole array, or each point has its own. What lies behind the eye (w ≤ 0) has no pixel: NaN.
+
+use super::{Rows4, normal_matrix::normal_matrix};
+use crate::dispatch;
+use crate::parallel::{self, Interrupted, Watch};
+use crate::real::Real;
+use crate::vec::{Mat3, Mat4, Vec3, Vec4};
+
+const PIECE: usize = 1 << 14;
+
+/// What becomes of each point.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Kind {
+    /// w = 1, divided by the resulting w.
+    Point,
+    /// w = 0: the linear part alone.
+    Vector,
+    /// By the normal matrix, then unit length.
+    Normal,
+}
+
+/// Each item with its matrix: `matrices` holds one for all, or one each.
+pub fn transform<T: Real>(
+    watch: &mut dyn Watch,
+    kind: Kind,
+    points: &[[T; 3]],
+    matrices: &[Rows4<T>],
+    out: &mut [[T; 3]],
+) -> Result<(), Interrupted> {
+    match kind {
+        Kind::Point => {
+            map(watch, points, matrices, out, Mat4::from_rows, |m, p| over_w(m.mul_point(p)).to_array())
+        }
+        Kind::Vector => {
+            map(watch, points, matrices, out, |r| Mat4::from_rows(r).mat3(), |m, p| m.mul_vec(p).to_array())
+        }
+        Kind::Normal => map(
+            watch,
+            points,
+            matrices,
+            out,
+            |r| normal_matrix(Mat4::from_rows(r).mat3()),
+            |m: &Mat3<T>, p| m.mul_vec(p).normalize().to_array(),
+        ),
+    }
+}
+
+/// Points to homogeneous coordinates, before any division: clip space, if the matrices project.
+pub fn homogeneous<T: Real>(
+    watch: &mut dyn Watch,
+    points: &[[T; 3]],
+    matrices: &[Rows4<T>],
+    out: &mut [[T; 4]],
+) -> Result<(), Interrupted> {
+    map(watch, points, matrices, out, Mat4::from_rows, |m, p| m.mul_point(p).to_array())
+}
+
+/// Points to pixels of a picture of `size` (x right, y down) and depth z/w.
+pub fn project<T: Real>(
+    watch: &mut dyn Watch,
+    points: &[[T; 3]],
+    matrices: &[Rows4<T>],
+    size: [T; 2],
+    out: &mut [[T; 3]],
+) -> Result<(), Interrupted> {
+    let half = size.map(|s| s * T::of(0.5));
+    map(watch, points, matrices, out, Mat4::from_rows, |m: &Mat4<T>, p| {
+        let clip = m.mul_point(p);
+        let visible = if clip.w > T::zero() { clip.w } else { T::NAN };
+        let ndc = clip.xyz().map(|c| c / visible);
+        [(ndc.x + T::one()) * half[0], (T::one() - ndc.y) * half[1], ndc.z]
+    })
+}
+
+/// The inverse of [`project`], given the matrices' inverses.
+pub fn unproject<T: Real>(
+    watch: &mut dyn Watch,
+    pixels: &[[T; 3]],
+    inverses: &[Rows4<T>],
+    size: [T; 2],
+    out: &mut [[T; 3]],
+) -> Result<(), Interrupted> {
+    let twice = size.map(|s| T::of(2.0) / s);
+    map(watch, pixels, inverses, out, Mat4::from_rows, |m, p: Vec3<T>| {
+        let ndc = Vec3::new(p.x * twice[0] - T::one(), T::one() - p.y * twice[1], p.z);
+        over_w(m.mul_point(ndc)).to_array()
+    })
+}
+
+/// The inverse, computed in double precision; None if the matrix is singular.
+pub fn inverse<T: Real>(m: &Rows4<f64>) -> Option<Rows4<T>> {
+    // glam takes columns; the transpose of the inverse is the inverse of the transpose.
+    let m = glam::DMat4::from_cols_array_2d(m);
+    let inverse = m.inverse();
+    let finite = m.determinant() != 0.0 && inverse.is_finite();
+    finite.then(|| inverse.to_cols_array_2d().map(|row| row.map(T::of)))
+}
+
+#[inline(always)]
+fn over_w<T: Real>(p: Vec4<T>) -> Vec3<T> {
+    p.xyz().map(|c| c / p.w)
+}
+
+/// Applies `f` to each item and what `prepare` made of its matrix; a common matrix is prepared once.
+fn map<T: Real, M: Sync, const N: usize>(
+    watch: &mut dyn Watch,
+    points: &[[T; 3]],
+    matrices: &[Rows4<T>],
+    out: &mut [[T; N]],
+    prepare: impl Fn(Rows4<T>) -> M + Sync,
+    f: impl Fn(&M, Vec3<T>) -> [T; N] + Sync,
+) -> Result<(), Interrupted> {
+    if let [common] = matrices {
+        let m = prepare(*common);
+        parallel::for_each(
+            watch,
+            (points, out),
+            PIECE,
+            |_, (points, out): (&[[T; 3]], &mut [[T; N]])| dispatch!(_s => common_body(points, out, |p| f(&m, p))),
+        )
+    } else {
+        parallel::for_each(
+            watch,
+            (points, matrices, out),
+            PIECE,
+            |_, (points, matrices, out)| dispatch!(_s => each_body(points, matrices, out, |m, p| f(&prepare(m), p))),
+        )
+    }
+}
+
+#[inline(always)]
+fn common_body<T: Real, const N: usize>(
+    points: &[[T; 3]],
+    out: &mut [[T; N]],
+    f: impl Fn(Vec3<T>) -> [T; N],
+) {
+    for (out, &p) in out.iter_mut().zip(points) {
+        *out = f(p.into());
+    }
+}
+
+#[inline(always)]
+fn each_body<T: Real, const N: usize>(
+    points: &[[T; 3]],
+    matrices: &[Rows4<T>],
+    out: &mut [[T; N]],
+    f: impl Fn(Rows4<T>, Vec3<T>) -> [T; N],
+) {
+    for ((out, &p), &m) in out.iter_mut().zip(points).zip(matrices) {
+        *out = f(m, p.into());
+    }
+}
