@@ -13,7 +13,7 @@ CHAPTERS = (
 ).split()
 FOUNDATION = {"math", "parallel", "real", "simd", "vec"}
 
-RUST = sorted(p for p in (ROOT / "src").rglob("*.rs"))
+RUST = sorted(p for p in (ROOT / "src").rglob("*.rs") if p.name != "tests.rs")
 KERNELS = [p for p in RUST if p.parent.name in CHAPTERS and p.parent.parent.name == "src"]
 FACES = sorted(p for p in (ROOT / "python/shadelab").glob("*.py") if p.stem in CHAPTERS)
 STUDY = sorted((ROOT / "python/shadelab/study").rglob("*.py"))
@@ -25,7 +25,7 @@ def name(path):
 
 def code(path):
     """Rust without comments and without the tests at its end."""
-    text = path.read_text().split("#[cfg(test)]")[0]
+    text = path.read_text().split("#[cfg(test)]\nmod")[0]
     return re.sub(r"//[^\n]*", "", text)
 
 

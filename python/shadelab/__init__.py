@@ -7,6 +7,10 @@ transform
     Model, view, projection, viewport; points through them.
 sampling
     Generators, sequences, and warps with their densities.
+image
+    Pictures: error metrics.
+color
+    Transfer functions, luminance, tone mapping.
 geometry
     Ray tests and barycentrics.
 accel
@@ -23,7 +27,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, Any
 
-from . import accel, brdf, geometry, raster, sampling, transform
+from . import accel, brdf, color, geometry, image, raster, sampling, transform
 from ._runtime import set_threads, simd, simd_level, simd_levels, threads
 
 if TYPE_CHECKING:
@@ -32,7 +36,9 @@ if TYPE_CHECKING:
 __all__ = [
     "accel",
     "brdf",
+    "color",
     "geometry",
+    "image",
     "raster",
     "sampling",
     "set_threads",
