@@ -4,7 +4,7 @@
 //! scalar loop (which the compiler vectorises inside the dispatch of [`crate::simd`]) and explicit lanes alike,
 //! with the same bits, since nothing here is fused. [`Real`] is the scalar itself: `f32` or `f64`.
 
-use fearless_simd::{Select, Simd, SimdBase, SimdFloat, SimdFloatElement, SimdMask};
+use fearless_simd::{Bytes, Select, Simd, SimdBase, SimdFloat, SimdFloatElement, SimdMask};
 use fearless_simd::{f32x4, f32x8, f32x16, f64x2, f64x4, f64x8};
 use num_traits::NumAssign;
 use std::fmt::Debug;
@@ -83,6 +83,8 @@ pub trait Real:
     fn of(x: f64) -> Self;
     fn to_f64(self) -> f64;
     fn floor(self) -> Self;
+    /// Lanes that hold integers in [0, 2^22], as integers.
+    fn indices<S: Simd>(v: Self::V8<S>) -> [u32; 8];
     /// The nearest number towards +infinity.
     fn next_up(self) -> Self;
     /// The nearest number towards -infinity.
@@ -188,6 +190,19 @@ macro_rules! scalar {
                 <$t>::floor(self)
             }
             #[inline(always)]
+            fn indices<S: Simd>(v: Self::V8<S>) -> [u32; 8] {
+                // Beside 2^mantissa the integer stands in the lowest bits.
+                let bits = v + (1u64 << $mantissa) as $t;
+                let bits: <$v8<S> as SimdFloat<S>>::Bits = bits.bitcast();
+                let bits = bits & ((1 << $mantissa) - 1);
+                let bits = bits.as_slice();
+                let mut out = [0; 8];
+                for k in 0..8 {
+                    out[k] = bits[k] as u32;
+                }
+                out
+            }
+            #[inline(always)]
             fn next_up(self) -> $t {
                 <$t>::next_up(self)
             }
@@ -261,17 +276,20 @@ macro_rules! vector {
             }
             #[inline(always)]
             fn exp2i(n: Self) -> Self {
+                // `bitcast`, since `to_bits` and `from_bits` are not inlined into the dispatch.
                 let shifted = n + ($bias as $t + (1u64 << $mantissa) as $t);
-                SimdFloat::from_bits(SimdFloat::to_bits(shifted) << $mantissa)
+                let bits: <$v<S> as SimdFloat<S>>::Bits = shifted.bitcast();
+                (bits << $mantissa).bitcast()
             }
             #[inline(always)]
             fn split_exponent(self) -> (Self, Self) {
                 let half = (0.5 as $t).sqrt().to_bits();
                 let one = (1.0 as $t).to_bits();
-                let x = SimdFloat::to_bits(self) + one.wrapping_sub(half);
+                let bits: <$v<S> as SimdFloat<S>>::Bits = self.bitcast();
+                let x = bits + one.wrapping_sub(half);
                 let magic = (1u64 << $mantissa) as $t;
-                let e: Self = SimdFloat::from_bits((x >> $mantissa) | magic.to_bits());
-                let m: Self = SimdFloat::from_bits((x & ((1 << $mantissa) - 1)) + half);
+                let e: Self = ((x >> $mantissa) | magic.to_bits()).bitcast();
+                let m: Self = ((x & ((1 << $mantissa) - 1)) + half).bitcast();
                 (m, e - magic - $bias as $t)
             }
         }

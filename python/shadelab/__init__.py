@@ -19,6 +19,8 @@ brdf
     Reflection models: evaluation, sampling, density.
 raster
     The pipeline: coverage, depth, interpolation, G-buffer.
+shadow
+    Shadow maps and their filters.
 study
     What each technique costs and what it loses: questions, fronts, reports, stability.
 """
@@ -27,7 +29,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, Any
 
-from . import accel, brdf, color, geometry, image, raster, sampling, transform
+from . import accel, brdf, color, geometry, image, raster, sampling, shadow, transform
 from ._runtime import set_threads, simd, simd_level, simd_levels, threads
 
 if TYPE_CHECKING:
@@ -42,6 +44,7 @@ __all__ = [
     "raster",
     "sampling",
     "set_threads",
+    "shadow",
     "simd",
     "simd_level",
     "simd_levels",

@@ -1,1 +1,15 @@
-//! Shadow maps and their filters.
+//! Shadow maps and their filters, and shadows by rays. Every lookup returns the lit fraction of the light, in [0, 1].
+//!
+//! - [`shadow_map`](mod@shadow_map): depth as the light sees it
+//! - [`hard`]: one comparison
+//! - [`pcf`]: percentage-closer filtering over a fixed width
+//! - [`pcss`]: percentage-closer soft shadows, whose width follows from the blockers
+//!
+//! The parts: `lookup` (the map, the bias, and the taps that all filters share), `pattern` (where the taps of a filter lie).
+
+pub mod hard;
+pub(crate) mod lookup;
+pub(crate) mod pattern;
+pub mod pcf;
+pub mod pcss;
+pub mod shadow_map;

@@ -1,0 +1,734 @@
+"""Shadow maps and their filters: every function returns the lit fraction of a light, in [0, 1].
+
+A `ShadowMap` holds the depth of a scene as a light sees it, linear along the light's axis. `hard` compares once, `pcf`
+averages comparisons over a fixed width, `pcss` over the width that the blockers call for.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable
+from dataclasses import dataclass
+from typing import Any, Literal, NamedTuple, TypeAlias, overload
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from . import _arrays
+from ._arrays import Floats
+from ._kernels import shadow as _kernels
+
+__all__ = ["Cost", "PCSS", "ShadowMap", "cost", "hard", "pcf", "pcss", "shadow_map"]
+
+Kernel: TypeAlias = Literal["vogel", "box", "grid"]
+Cull: TypeAlias = Literal["none", "back", "front"]
+_KERNELS = ("vogel", "box", "grid")
+_MAX_RESOLUTION = 16384
+_MAX_SAMPLES = 4096
+# How far from its axis a light's map may look: 75 degrees.
+_MAX_TANGENT = math.tan(math.radians(75.0))
+# Nothing nearer than this fraction of the farthest depth is drawn into a perspective map.
+_NEAREST = 1e-4
+
+
+@dataclass(frozen=True, eq=False)
+class ShadowMap:
+    """The depth of a scene as a light sees it.
+
+    Parameters
+    ----------
+    depth : array_like, shape (H, W)
+        Depth at texel centres, linear along the light's axis, infinite where nothing was hit. Row 0 is the top. Its
+        precision is that of every lookup.
+    projection : {"perspective", "orthographic"}
+        Whether texels are rays from a point, or parallel.
+    position : array_like, shape (3,)
+        Where depth is zero: the light, or a point behind all casters for a directional light.
+    frame : array_like, shape (3, 3)
+        Unit vectors in rows: the map's right, its up, and the axis along which light travels.
+    window : array_like, shape (4,)
+        Left, right, bottom, top of the map: on the plane at depth 1 (perspective), or in world units.
+    near, far : float
+        The least and the greatest depth of anything in the map.
+    light_size : (float, float)
+        Sides of the light along right and up, in world units; 0 for a light without extent.
+
+    Raises
+    ------
+    TypeError, ValueError
+        If an argument has the wrong type or shape, or the window has no extent.
+    """
+
+    depth: Floats
+    projection: Literal["perspective", "orthographic"]
+    position: NDArray[np.float64]
+    frame: NDArray[np.float64]
+    window: NDArray[np.float64]
+    near: float
+    far: float
+    light_size: tuple[float, float] = (0.0, 0.0)
+
+    def __post_init__(self) -> None:
+        def fix(name: str, value: Any) -> None:
+            object.__setattr__(self, name, value)
+
+        depth = _arrays.floats("depth", self.depth)
+        if depth.ndim != 2 or 0 in depth.shape:
+            raise ValueError(f"depth: expected shape (H, W), neither zero, got {depth.shape}")
+        fix("depth", depth)
+        _arrays.choice("projection", self.projection, ("perspective", "orthographic"))
+        for name, shape in (("position", (3,)), ("frame", (3, 3)), ("window", (4,))):
+            value = _arrays.floats(name, getattr(self, name), np.float64)
+            if value.shape != shape or not np.isfinite(value).all():
+                raise ValueError(f"{name}: expected shape {shape} of finite numbers, got {value.tolist()}")
+            fix(name, value)
+        left, right, bottom, top = self.window
+        if not (left < right and bottom < top):
+            raise ValueError(f"window: expected left < right and bottom < top, got {self.window.tolist()}")
+        fix("near", _arrays.number("near", self.near))
+        fix("far", _arrays.number("far", self.far))
+        fix("light_size", _sides("light_size", self.light_size))
+
+    @property
+    def axis(self) -> NDArray[np.float64]:
+        """The direction in which light travels along the middle of the map, shape (3,)."""
+        return self.frame[2]
+
+    @property
+    def view(self) -> NDArray[np.float64]:
+        """From world to the light's frame, looking down -z, shape (4, 4)."""
+        rotation = self.frame * [[1.0], [1.0], [-1.0]]
+        matrix = np.eye(4)
+        matrix[:3, :3], matrix[:3, 3] = rotation, -rotation @ self.position
+        return matrix
+
+    @property
+    def matrix(self) -> NDArray[np.float64]:
+        """From world to clip space, -w <= x, y, z <= w over the map and between `near` and `far`, shape (4, 4)."""
+        left, right, bottom, top = self.window
+        n, f = self.near, max(self.far, self.near + max(abs(self.near), 1.0) * 1e-6)
+        width, height, range_ = right - left, top - bottom, f - n
+        if self.projection == "perspective":
+            projection = [
+                [2 / width, 0, (right + left) / width, 0],
+                [0, 2 / height, (top + bottom) / height, 0],
+                [0, 0, -(f + n) / range_, -2 * f * n / range_],
+                [0, 0, -1, 0],
+            ]
+        else:
+            projection = [
+                [2 / width, 0, 0, -(right + left) / width],
+                [0, 2 / height, 0, -(top + bottom) / height],
+                [0, 0, -2 / range_, -(f + n) / range_],
+                [0, 0, 0, 1],
+            ]
+        return np.asarray(projection, np.float64) @ self.view
+
+    def texel_size(self, depth: float = 1.0) -> float:
+        """The larger side of a texel in world units, at a depth (which matters to a perspective map alone)."""
+        left, right, bottom, top = self.window
+        height, width = self.depth.shape
+        size = max((right - left) / width, (top - bottom) / height)
+        return float(size * depth if self.projection == "perspective" else size)
+
+    def _geometry(self) -> list[float]:
+        return [*self.position, *self.frame.ravel(), *self.window, self.near]
+
+
+class PCSS(NamedTuple):
+    """What `pcss` found on its way; arrays of the batch's shape."""
+
+    lit: Floats
+    """The lit fraction."""
+    blocker_depth: Floats
+    """Mean depth of the blockers; NaN where there are none."""
+    penumbra: Floats
+    """Width of the penumbra along the larger side of the light, in world units; 0 without blockers."""
+    search_radius: Floats
+    """Half the larger side of the search region, in texels."""
+
+
+class Cost(NamedTuple):
+    """What a lookup asks of any machine, for one receiver."""
+
+    texel_reads: int
+    """The most texels read; `pcss` stops after the search where nothing blocks."""
+    rays: int
+    """Shadow rays."""
+    bytes: int
+    """The most bytes read from the map."""
+
+
+def cost(technique: str, *, itemsize: int = 4, **knobs: Any) -> Cost:
+    """What a technique of this chapter asks for one receiver, whatever the machine.
+
+    Parameters
+    ----------
+    technique : {"hard", "pcf", "pcss", "ray_traced"}
+        The function's name.
+    itemsize : int
+        Bytes of a texel.
+    **knobs
+        The function's own arguments; those that do not matter to the cost are ignored.
+
+    Returns
+    -------
+    Cost
+
+    Raises
+    ------
+    ValueError
+        If there is no such technique.
+
+    Examples
+    --------
+    >>> cost("pcss", blocker_samples=16, filter_samples=32)
+    Cost(texel_reads=48, rays=0, bytes=192)
+    """
+    _arrays.choice("technique", technique, ("hard", "pcf", "pcss", "ray_traced"))
+    if technique == "ray_traced":
+        return Cost(0, int(knobs.get("samples", 16)), 0)
+    if technique == "hard":
+        reads = 1
+    elif technique == "pcf":
+        reads = int(knobs.get("samples", 16))
+    else:
+        reads = int(knobs.get("blocker_samples", 16)) + int(knobs.get("filter_samples", 32))
+    return Cost(reads, 0, reads * itemsize)
+
+
+def _sides(name: str, value: Any) -> tuple[float, float]:
+    """One width for both sides, or a pair."""
+    pair = (value, value) if np.ndim(value) == 0 else tuple(value)
+    if len(pair) != 2:
+        raise ValueError(f"{name}: expected a number or a pair, got {value!r}")
+    return _arrays.number(name, pair[0], 0.0), _arrays.number(name, pair[1], 0.0)
+
+
+def shadow_map(
+    positions: ArrayLike,
+    faces: ArrayLike,
+    light: Any,
+    resolution: int | tuple[int, int] = 1024,
+    *,
+    receivers: ArrayLike | None = None,
+    cull: Cull = "none",
+    progress: bool | Callable[[int, int], object] | None = None,
+) -> ShadowMap:
+    """Draw the depth of a mesh as a light sees it.
+
+    Parameters
+    ----------
+    positions : array_like, shape (V, 3)
+        Vertices of everything that casts a shadow. Their precision is the map's.
+    faces : array_like of int, shape (F, 3)
+        Triangles.
+    light : PointLight, RectLight or DirectionalLight
+        A point light is seen through one perspective map towards the scene's middle, a rectangular light through one
+        from its centre along its normal, a directional light through a parallel one. All are fitted to the mesh.
+    resolution : int or (int, int)
+        Texels along both sides, or (width, height); at most 16384.
+    receivers : array_like, shape (..., 3), optional
+        Points that will be looked up. The map is then fitted to what lies between them and the light, which gives
+        finer texels where a large scene casts onto a small view.
+    cull : {"none", "back", "front"}
+        Faces that are dropped. "front" keeps what faces away from the light: less acne, more leaks.
+    progress : bool or callable, optional
+        True shows a bar; a callable gets (done, total).
+
+    Returns
+    -------
+    ShadowMap
+
+    Raises
+    ------
+    TypeError, ValueError
+        If an argument has the wrong type or shape, or the light points nowhere.
+
+    Notes
+    -----
+    Depth is linear and exact to a few roundings of its precision. Perspective maps look at most 75 degrees away from
+    their axis; what lies outside of a map counts as lit. So a point light within its scene needs several maps, and a
+    two-sided rectangular light is seen from its front alone. Cost: one rasterisation, and `resolution`² items.
+
+    References
+    ----------
+    L. Williams, *Casting Curved Shadows on Curved Surfaces*, 1978.
+
+    Examples
+    --------
+    >>> from shadelab.light import DirectionalLight
+    >>> triangle = [[0.0, 1, 0], [1, 1, 0], [0, 1, 1]]
+    >>> light = DirectionalLight(direction=(0, -1, 0), irradiance=(1, 1, 1))
+    >>> shadow_map(triangle, [[0, 2, 1]], light, 8).depth.shape
+    (8, 8)
+    """
+    points = _arrays.vectors("positions", positions)
+    if points.ndim != 2:
+        raise ValueError(f"positions: expected shape (V, 3), got {points.shape}")
+    given = np.asarray(faces)
+    triangles = _arrays.indices("faces", given.reshape(0, 3) if given.size == 0 else given, 3, len(points))
+    width, height = (resolution, resolution) if np.ndim(resolution) == 0 else resolution  # type: ignore[misc]
+    width = _arrays.count("resolution", width, 1, _MAX_RESOLUTION)
+    height = _arrays.count("resolution", height, 1, _MAX_RESOLUTION)
+    _arrays.choice("cull", cull, ("none", "back", "front"))
+    looked_up = None if receivers is None else _arrays.vectors("receivers", receivers).reshape(-1, 3)
+
+    perspective, origin, frame, sides = _light_frame(light, points, looked_up)
+    # The map and its lookups must round the frame alike.
+    origin, frame = (a.astype(points.dtype).astype(np.float64) for a in (origin, frame))
+    used = points[np.unique(triangles)].astype(np.float64)
+    local = (used - origin) @ frame.T
+    if perspective:
+        window, near, far = _fit_perspective(local, points, triangles, origin, frame, looked_up, sides)
+    else:
+        origin, window, near, far = _fit_orthographic(local, origin, frame, looked_up)
+        origin = origin.astype(points.dtype).astype(np.float64)
+    window = _grow(window, (width, height)).astype(points.dtype).astype(np.float64)
+
+    depth = np.empty((height, width), points.dtype)
+    view = (list(origin), frame.tolist(), list(window), near, far, perspective)
+    _kernels.shadow_map(points, triangles, view, cull, _arrays.progress_callback(progress, "shadow map"), depth)
+    # What was drawn is a tighter bound than what was fitted, and the blocker search starts there.
+    drawn = np.isfinite(depth)
+    if drawn.any():
+        near, far = float(depth.min()), float(depth.max(where=drawn, initial=-np.inf))
+    kind: Literal["perspective", "orthographic"] = "perspective" if perspective else "orthographic"
+    return ShadowMap(depth, kind, origin, frame, window, near, far, sides)
+
+
+def _unit(name: str, v: NDArray[np.float64]) -> NDArray[np.float64]:
+    length = np.linalg.norm(v)
+    if not (np.isfinite(length) and length > 0):
+        raise ValueError(f"{name}: expected a direction, got {v.tolist()}")
+    return np.asarray(v / length)
+
+
+def _frame_along(axis: NDArray[np.float64]) -> NDArray[np.float64]:
+    """Right, up, axis, with the world's y up unless the axis is close to it."""
+    world_up = np.array([0.0, 1.0, 0.0]) if abs(axis[1]) < 0.99 else np.array([0.0, 0.0, 1.0])
+    right = _unit("light", np.cross(axis, world_up))
+    return np.stack([right, np.cross(right, axis), axis])
+
+
+def _light_frame(
+    light: Any, points: Floats, receivers: Floats | None
+) -> tuple[bool, NDArray[np.float64], NDArray[np.float64], tuple[float, float]]:
+    """Whether the map is perspective, its origin, its frame, and the light's sides."""
+    if hasattr(light, "edge_u"):
+        u, v = np.asarray(light.edge_u, np.float64), np.asarray(light.edge_v, np.float64)
+        axis, right = _unit("light", np.cross(u, v)), _unit("light", u)
+        frame = np.stack([right, np.cross(right, axis), axis])
+        # Edges need not be square to each other: what counts is the extent along the map's sides.
+        return True, np.asarray(light.center, np.float64), frame, (float(np.linalg.norm(u)), float(abs(v @ frame[1])))
+    seen = points if receivers is None or not receivers.size else receivers
+    finite = seen[np.isfinite(seen).all(-1)].astype(np.float64)
+    middle = (finite.min(0) + finite.max(0)) / 2 if len(finite) else np.zeros(3)
+    if hasattr(light, "position"):
+        position = np.asarray(light.position, np.float64)
+        away = middle - position
+        axis = _unit("light", away) if np.linalg.norm(away) > 0 else np.array([0.0, -1.0, 0.0])
+        return True, position, _frame_along(axis), (0.0, 0.0)
+    if hasattr(light, "direction"):
+        return False, middle, _frame_along(_unit("light", np.asarray(light.direction, np.float64))), (0.0, 0.0)
+    raise TypeError(f"light: expected a PointLight, RectLight or DirectionalLight, got {type(light).__name__}")
+
+
+def _fit_perspective(
+    local: NDArray[np.float64],
+    points: Floats,
+    triangles: NDArray[np.int32],
+    origin: NDArray[np.float64],
+    frame: NDArray[np.float64],
+    receivers: Floats | None,
+    sides: tuple[float, float],
+) -> tuple[NDArray[np.float64], float, float]:
+    """The window at unit depth, and the depths to draw between."""
+    far = float(local[:, 2].max(initial=0.0))
+    if far <= 0.0:
+        return np.array([-1.0, 1, -1, 1]), 1.0, 1.0
+    near = far * _NEAREST
+    front = local[local[:, 2] >= near]
+    # Where an edge passes the near plane, the triangle is seen from there on.
+    corners = ((points.astype(np.float64) - origin) @ frame.T)[triangles]
+    ends = np.concatenate([corners, np.roll(corners, -1, axis=1)], axis=-1).reshape(-1, 6)
+    ends = ends[(ends[:, 2] < near) != (ends[:, 5] < near)]
+    share = ((near - ends[:, 2]) / (ends[:, 5] - ends[:, 2]))[:, None]
+    front = np.concatenate([front, ends[:, :3] + share * (ends[:, 3:] - ends[:, :3])])
+    window = _bounds(front[:, :2] / front[:, 2:])
+    if receivers is not None:
+        seen = (receivers.astype(np.float64) - origin) @ frame.T
+        seen = seen[seen[:, 2] > near]
+        if len(seen):
+            # A receiver looks at the light past blockers as near as any: its search may reach so far aside.
+            reach = np.asarray(sides) / 2 * max(1 / front[:, 2].min() - 1 / seen[:, 2].max(), 0.0)
+            around = _bounds(seen[:, :2] / seen[:, 2:]) + np.array([-1, 1, -1, 1]) * np.repeat(reach, 2)
+            window = _common(window, around)
+    return np.clip(window, -_MAX_TANGENT, _MAX_TANGENT), near, far
+
+
+def _fit_orthographic(
+    local: NDArray[np.float64],
+    origin: NDArray[np.float64],
+    frame: NDArray[np.float64],
+    receivers: Floats | None,
+) -> tuple[NDArray[np.float64], NDArray[np.float64], float, float]:
+    """The origin moved before everything, the window, and the depths to draw between."""
+    if not len(local):
+        return origin, np.array([-1.0, 1, -1, 1]), 0.0, 1.0
+    low, high = float(local[:, 2].min()), float(local[:, 2].max())
+    margin = max((high - low) * 0.01, 1e-6 * float(np.abs(local).max()), 1e-30)
+    window = _bounds(local[:, :2])
+    if receivers is not None:
+        seen = (receivers.astype(np.float64) - origin) @ frame.T
+        if len(seen):
+            window = _common(window, _bounds(seen[:, :2]))
+    # One margin before the nearest, one behind the farthest caster.
+    moved = origin + frame[2] * (low - 2 * margin)
+    return moved, window, margin, high - low + 3 * margin
+
+
+def _bounds(xy: NDArray[np.float64]) -> NDArray[np.float64]:
+    (left, bottom), (right, top) = np.nanmin(xy, axis=0), np.nanmax(xy, axis=0)
+    return np.array([left, right, bottom, top])
+
+
+def _common(a: NDArray[np.float64], b: NDArray[np.float64]) -> NDArray[np.float64]:
+    """What two windows share; the first if they share nothing."""
+    both = np.array([max(a[0], b[0]), min(a[1], b[1]), max(a[2], b[2]), min(a[3], b[3])])
+    return both if both[0] < both[1] and both[2] < both[3] else a
+
+
+def _grow(window: NDArray[np.float64], size: tuple[int, int]) -> NDArray[np.float64]:
+    """Two texels more on each side, so that a silhouette lies within; never without extent."""
+    grown = window.astype(np.float64).copy()
+    smallest = 1e-3 * max(float(np.abs(window).max()), float(np.ptp(window[:2])), float(np.ptp(window[2:])), 1e-30)
+    for i, texels in ((0, size[0]), (2, size[1])):
+        extent = max(grown[i + 1] - grown[i], smallest)
+        middle = (grown[i] + grown[i + 1]) / 2
+        half = extent * (0.5 + 2.0 / texels)
+        grown[i], grown[i + 1] = middle - half, middle + half
+    return grown
+
+
+def _granted(
+    shadow_map: ShadowMap,
+    normals: ArrayLike | None,
+    bias: float,
+    slope_bias: float,
+    normal_offset: float,
+    receiver_plane: bool,
+) -> tuple[float, float, float, bool]:
+    if not isinstance(shadow_map, ShadowMap):
+        raise TypeError(f"shadow_map: expected a ShadowMap, got {type(shadow_map).__name__}")
+    return (
+        _arrays.number("bias", bias),
+        _arrays.number("slope_bias", slope_bias, 0.0),
+        _arrays.number("normal_offset", normal_offset, 0.0),
+        bool(receiver_plane) and normals is not None,
+    )
+
+
+def _receivers(
+    shadow_map: ShadowMap, receivers: ArrayLike, normals: ArrayLike | None
+) -> tuple[tuple[int, ...], Floats, Floats | None]:
+    """The batch's shape, points and normals as (n, 3) in the map's precision."""
+    dtype = shadow_map.depth.dtype
+    named = {"receivers": (_arrays.vectors("receivers", receivers, 3, dtype), 1)}
+    if normals is not None:
+        named["normals"] = (_arrays.vectors("normals", normals, 3, dtype), 1)
+    shape, flat = _arrays.broadcast(named)
+    return shape, flat[0], flat[1] if normals is not None else None
+
+
+def _result(out: Floats | None, shape: tuple[int, ...], dtype: Any) -> tuple[Floats, Floats]:
+    result = _arrays.output("out", out, shape, dtype)
+    return result, result.reshape(-1)
+
+
+def _taps(name: str, kernel: str, samples: int, seed: int | None) -> tuple[str, int, int | None]:
+    _arrays.choice("kernel", kernel, _KERNELS)
+    n = _arrays.count(name, samples, 1, _MAX_SAMPLES)
+    if kernel == "grid" and math.isqrt(n) ** 2 != n:
+        raise ValueError(f"{name}: expected a square number for kernel 'grid', got {n}")
+    return kernel, n, None if seed is None else _arrays.count("seed", seed, 0, 2**64 - 1)
+
+
+def hard(
+    shadow_map: ShadowMap,
+    receivers: ArrayLike,
+    normals: ArrayLike | None = None,
+    *,
+    bias: float = 0.0,
+    slope_bias: float = 0.05,
+    normal_offset: float = 0.0,
+    receiver_plane: bool = True,
+    out: Floats | None = None,
+) -> Floats:
+    """Hard shadows: 1 where the light's centre is seen, 0 elsewhere, by one texel.
+
+    Parameters
+    ----------
+    shadow_map : ShadowMap
+        The depth that the light sees; its precision governs.
+    receivers : array_like, shape (..., 3)
+        Points in the world.
+    normals : array_like, shape (..., 3), optional
+        Unit normals of the receivers, geometric ones if there is a choice. Leading axes broadcast.
+    bias : float
+        World units of depth that a blocker must be nearer by.
+    slope_bias : float
+        Texels: a blocker must be nearer by the depth that the receiver's plane gains over them. Needs normals.
+    normal_offset : float
+        Texels that receivers are moved by along their normal, times the sine of the light's angle to it. Needs normals.
+    receiver_plane : bool
+        Compare with the receiver's tangent plane at the texel's centre rather than with its own depth. Needs normals.
+    out : ndarray, shape (...), optional
+        The array to write into.
+
+    Returns
+    -------
+    ndarray, shape (...)
+        The lit fraction, 0 or 1; 1 outside of the map and behind the light; NaN where a receiver or normal is NaN.
+
+    Raises
+    ------
+    TypeError, ValueError
+        If an argument has the wrong type or shape, or a bias is negative.
+
+    Notes
+    -----
+    Shadow edges are exact to half a texel. With `normals`, a lit plane at any angle shows no acne: the
+    comparison happens where the texel's depth was taken. Without, choose `bias`; with ``receiver_plane=False``, a
+    `slope_bias` of 0.5 covers a texel, and blockers nearer to the receiver than that detach from their shadows.
+    Cost: one texel read.
+
+    References
+    ----------
+    L. Williams, *Casting Curved Shadows on Curved Surfaces*, 1978. J. Isidoro, *Shadow Mapping: GPU-based Tips and
+    Techniques*, GDC 2006 (receiver plane). D. Holbert, *Saying "Goodbye" to Shadow Acne*, GDC 2011 (normal offset).
+
+    Examples
+    --------
+    >>> import numpy as np
+    >>> depth = np.where(np.arange(4) < 2, 2.0, np.inf)[None].repeat(4, 0)
+    >>> frame = [[1, 0, 0], [0, 0, -1], [0, -1, 0]]
+    >>> above = ShadowMap(depth, "perspective", [0, 4, 0], frame, [-1, 1, -1, 1], 2.0, 4.0)
+    >>> hard(above, [[-1.0, 0, 0], [1, 0, 0]], [0, 1, 0])
+    array([0., 1.])
+    """
+    granted = _granted(shadow_map, normals, bias, slope_bias, normal_offset, receiver_plane)
+    shape, points, n = _receivers(shadow_map, receivers, normals)
+    result, flat = _result(out, shape, points.dtype)
+    perspective = shadow_map.projection == "perspective"
+    _kernels.hard(shadow_map.depth, shadow_map._geometry(), perspective, points, n, granted, flat)
+    return result
+
+
+def pcf(
+    shadow_map: ShadowMap,
+    receivers: ArrayLike,
+    normals: ArrayLike | None = None,
+    *,
+    samples: int = 16,
+    radius: float = 1.5,
+    units: Literal["texels", "world"] = "texels",
+    kernel: Kernel = "vogel",
+    seed: int | None = 0,
+    bias: float = 0.0,
+    slope_bias: float = 0.05,
+    normal_offset: float = 0.0,
+    receiver_plane: bool = True,
+    out: Floats | None = None,
+) -> Floats:
+    """Percentage-closer filtering: the share of texels around a receiver that do not block it.
+
+    Parameters
+    ----------
+    shadow_map, receivers, normals
+        As in `hard`.
+    samples : int
+        Texels compared, at most 4096.
+    radius : float
+        Half the side of the filter.
+    units : {"texels", "world"}
+        Whether `radius` is in texels of the map, or in world units at the receiver, parallel to the map's plane.
+    kernel : {"vogel", "box", "grid"}
+        Where the samples lie: on a disk (Vogel's spiral), in a square (a lattice), or in n × n cells of a square.
+    seed : int or None
+        Each receiver turns the disk, or shifts the square's points, by random amounts that follow from the seed and its
+        place in the batch: noise instead of banding. None gives all receivers the same points.
+    bias, slope_bias, normal_offset, receiver_plane, out
+        As in `hard`.
+
+    Returns
+    -------
+    ndarray, shape (...)
+        The lit fraction, a multiple of 1 / `samples`; NaN where a receiver or normal is NaN.
+
+    Raises
+    ------
+    TypeError, ValueError
+        If an argument has the wrong type, shape or range.
+
+    Notes
+    -----
+    A penumbra of one width everywhere: right for antialiasing, wrong for an area light, whose shadow should harden at
+    contact. As `radius` goes to 0 the result is that of `hard`. With normals the filter follows the receiver's tangent
+    plane, so that wide filters need no more bias than narrow ones. Cost: `samples` texel reads.
+
+    References
+    ----------
+    W. Reeves, D. Salesin, R. Cook, *Rendering Antialiased Shadows with Depth Maps*, 1987. H. Vogel, *A better way to
+    construct the sunflower head*, 1979.
+
+    Examples
+    --------
+    >>> import numpy as np
+    >>> depth = np.where(np.arange(64) < 32, 2.0, np.inf)[None].repeat(64, 0)
+    >>> frame = [[1, 0, 0], [0, 0, -1], [0, -1, 0]]
+    >>> above = ShadowMap(depth, "perspective", [0, 4, 0], frame, [-1, 1, -1, 1], 2.0, 4.0)
+    >>> pcf(above, [[-1.0, 0, 0], [0, 0, 0], [1, 0, 0]], [0, 1, 0], radius=4, kernel="box", seed=None)
+    array([0. , 0.5, 1. ])
+    """
+    granted = _granted(shadow_map, normals, bias, slope_bias, normal_offset, receiver_plane)
+    taps = _taps("samples", kernel, samples, seed)
+    half = _arrays.number("radius", radius, 0.0)
+    texels = _arrays.choice("units", units, ("texels", "world")) == "texels"
+    shape, points, n = _receivers(shadow_map, receivers, normals)
+    result, flat = _result(out, shape, points.dtype)
+    perspective = shadow_map.projection == "perspective"
+    geometry = shadow_map._geometry()
+    _kernels.pcf(shadow_map.depth, geometry, perspective, points, n, taps, half, texels, granted, flat)
+    return result
+
+
+@overload
+def pcss(
+    shadow_map: ShadowMap,
+    receivers: ArrayLike,
+    normals: ArrayLike | None = ...,
+    *,
+    light_size: float | tuple[float, float] | None = ...,
+    blocker_samples: int = ...,
+    filter_samples: int = ...,
+    kernel: Kernel | None = ...,
+    seed: int | None = ...,
+    bias: float = ...,
+    slope_bias: float = ...,
+    normal_offset: float = ...,
+    receiver_plane: bool = ...,
+    full_output: Literal[False] = ...,
+    out: Floats | None = ...,
+) -> Floats: ...
+@overload
+def pcss(
+    shadow_map: ShadowMap,
+    receivers: ArrayLike,
+    normals: ArrayLike | None = ...,
+    *,
+    light_size: float | tuple[float, float] | None = ...,
+    blocker_samples: int = ...,
+    filter_samples: int = ...,
+    kernel: Kernel | None = ...,
+    seed: int | None = ...,
+    bias: float = ...,
+    slope_bias: float = ...,
+    normal_offset: float = ...,
+    receiver_plane: bool = ...,
+    full_output: Literal[True],
+    out: Floats | None = ...,
+) -> PCSS: ...
+def pcss(
+    shadow_map: ShadowMap,
+    receivers: ArrayLike,
+    normals: ArrayLike | None = None,
+    *,
+    light_size: float | tuple[float, float] | None = None,
+    blocker_samples: int = 16,
+    filter_samples: int = 32,
+    kernel: Kernel | None = None,
+    seed: int | None = 0,
+    bias: float = 0.0,
+    slope_bias: float = 0.05,
+    normal_offset: float = 0.0,
+    receiver_plane: bool = True,
+    full_output: bool = False,
+    out: Floats | None = None,
+) -> Floats | PCSS:
+    """Percentage-closer soft shadows: a penumbra as wide as light, blocker and receiver make it.
+
+    Parameters
+    ----------
+    shadow_map, receivers, normals
+        As in `hard`.
+    light_size : float or (float, float), optional
+        Width of the light in world units, or its sides along the map's right and up; that of the map's own light by
+        default. For an orthographic map the angle in radians that the light spans (0.0093 for the sun).
+    blocker_samples, filter_samples : int
+        Texels read to find the blockers' mean depth, and to filter; at most 4096 each.
+    kernel : {"vogel", "box", "grid"}, optional
+        As in `pcf`; "box" is the shape of a rectangular light and the default for it, "vogel" that of a disk.
+    seed, bias, slope_bias, normal_offset, receiver_plane
+        As in `pcf`.
+    full_output : bool
+        Also return the blocker depth, the penumbra width and the search radius.
+    out : ndarray, shape (...), optional
+        The array to write the lit fraction into.
+
+    Returns
+    -------
+    ndarray, shape (...), or PCSS
+        The lit fraction; with `full_output` the named tuple of all arrays. NaN where a receiver or normal is NaN.
+
+    Raises
+    ------
+    TypeError, ValueError
+        If an argument has the wrong type, shape or range, or the light has no extent and `light_size` is not given.
+
+    Notes
+    -----
+    1. Blocker search over the region in which the light could be hidden by something at the map's least depth.
+    2. Penumbra w = (d_receiver - d_blocker) / d_blocker · light_size, depths being linear along the light's axis
+       (w = (d_receiver - d_blocker) · 2 tan(light_size / 2) for an orthographic map).
+    3. Percentage-closer filtering over w.
+
+    Exact, up to noise and texels, for one flat blocker parallel to the light and a receiver of any slope near the
+    light's axis; under a rectangular light with kernel "box" also in profile. Fails where blockers at several depths
+    overlap: they count as one at their mean depth, so shadows of the nearer are too sharp and light may leak. What the
+    light's centre does not see cannot block. A few blocker samples miss thin blockers. Cost: `blocker_samples` texel
+    reads, and `filter_samples` more where something blocks.
+
+    References
+    ----------
+    R. Fernando, *Percentage-Closer Soft Shadows*, SIGGRAPH 2005 Sketches.
+
+    Examples
+    --------
+    >>> import numpy as np
+    >>> depth = np.where(np.arange(64) < 32, 2.0, np.inf)[None].repeat(64, 0)
+    >>> frame = [[1, 0, 0], [0, 0, -1], [0, -1, 0]]
+    >>> above = ShadowMap(depth, "perspective", [0, 4, 0], frame, [-1, 1, -1, 1], 2.0, 4.0)
+    >>> found = pcss(above, [[-1.0, 0, 0], [0, 0, 0]], [0, 1, 0], light_size=0.4, full_output=True, seed=None)
+    >>> found.lit, found.penumbra
+    (array([0. , 0.5]), array([0.4, 0.4]))
+    """
+    granted = _granted(shadow_map, normals, bias, slope_bias, normal_offset, receiver_plane)
+    sides = shadow_map.light_size if light_size is None else _sides("light_size", light_size)
+    if light_size is None and max(sides) == 0.0:
+        raise ValueError("light_size: the map's light has no extent, so its width must be given")
+    perspective = shadow_map.projection == "perspective"
+    if not perspective:
+        if max(sides) >= math.pi:
+            raise ValueError(f"light_size: expected an angle below pi, got {max(sides):g}")
+        sides = 2.0 * math.tan(sides[0] / 2.0), 2.0 * math.tan(sides[1] / 2.0)
+    if kernel is None:
+        kernel = "box" if max(shadow_map.light_size) > 0.0 else "vogel"
+    search = _taps("blocker_samples", kernel, blocker_samples, seed)
+    filtered = _taps("filter_samples", kernel, filter_samples, seed)
+    shape, points, n = _receivers(shadow_map, receivers, normals)
+    result, flat = _result(out, shape, points.dtype)
+    more = [np.empty_like(flat) for _ in range(3)] if full_output else None
+    geometry = shadow_map._geometry()
+    _kernels.pcss(shadow_map.depth, geometry, perspective, points, n, sides, search, filtered, granted, flat, more)
+    return result if more is None else PCSS(result, *(a.reshape(shape) for a in more))

@@ -1,0 +1,164 @@
+//! Where the taps of a filter lie in the square [-1, 1]², and how each receiver turns or shifts them.
+//!
+//! - Vogel's disk: the spiral of equal areas at golden-angle steps, turned by a random angle (H. Vogel, *A better way
+//!   to construct the sunflower head*, 1979).
+//! - Box: a lattice of golden-section steps, shifted toroidally by a random vector (R. Cranley, T. Patterson, 1976). Every
+//!   row and column of the square is met as evenly as the number of taps allows, so an edge along an axis has as many
+//!   grey levels as there are taps.
+//! - Grid: the centres of n × n cells, shifted within a cell.
+
+use crate::real::{Lanes, Real};
+use crate::shadow::lookup::{BLOCK, all};
+use crate::simd::*;
+
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Kind {
+    Vogel,
+    Box,
+    Grid,
+}
+
+/// Golden angle: cosine and sine of π(3 − √5).
+const GOLDEN: (f64, f64) = (-0.737_368_878_078_319_5, 0.675_490_294_261_523_6);
+/// The golden section, √5/2 − 1/2.
+const SECTION: f64 = 0.618_033_988_749_894_9;
+/// Angles that a disk may be turned by, and their step's cosine and sine.
+const TURNS: usize = 256;
+const STEP: (f64, f64) = (0.999_698_818_696_204_2, 0.024_541_228_522_912_288);
+
+/// Points of a filter, in blocks; the last one is padded.
+pub struct Pattern<T> {
+    kind: Kind,
+    x: Vec<[T; BLOCK]>,
+    y: Vec<[T; BLOCK]>,
+    turns: Vec<[T; 2]>,
+    /// Twice the period of a shift: the side of the square, or of a grid's cell.
+    cell: T,
+    seed: Option<u64>,
+    pub samples: usize,
+}
+
+/// How one receiver moves the points: a turn's cosine and sine, or a shift.
+#[derive(Clone, Copy)]
+pub struct Turn<T>(T, T);
+
+impl<T: Real> Pattern<T> {
+    /// `samples` points; for a grid the nearest square number not above it. Without a `seed` every receiver has the
+    /// same points.
+    pub fn new(kind: Kind, samples: usize, seed: Option<u64>) -> Self {
+        let samples = samples.max(1);
+        let side = samples.isqrt();
+        let points = match kind {
+            Kind::Vogel => vogel(samples),
+            Kind::Box => lattice(samples),
+            Kind::Grid => grid(side),
+        };
+        let n = points.len();
+        let block = |i: usize, f: &dyn Fn((f64, f64)) -> f64| {
+            std::array::from_fn(|k| points.get(i * BLOCK + k).map_or(T::zero(), |&p| T::of(f(p))))
+        };
+        let blocks = n.div_ceil(BLOCK);
+        Pattern {
+            kind,
+            x: (0..blocks).map(|i| block(i, &|p| p.0)).collect(),
+            y: (0..blocks).map(|i| block(i, &|p| p.1)).collect(),
+            turns: turns(TURNS, STEP).map(|(c, s)| [T::of(c), T::of(s)]).collect(),
+            cell: T::of(if kind == Kind::Grid { 2.0 / side as f64 } else { 2.0 }),
+            seed,
+            samples: n,
+        }
+    }
+
+    #[inline(always)]
+    pub fn blocks(&self) -> usize {
+        self.x.len()
+    }
+
+    /// The move of receiver `index`; `stream` tells filters of one receiver apart.
+    #[inline(always)]
+    pub fn turn(&self, index: u64, stream: u64) -> Turn<T> {
+        let Some(seed) = self.seed else {
+            return if self.kind == Kind::Vogel {
+                Turn(T::one(), T::zero())
+            } else {
+                Turn(T::zero(), T::zero())
+            };
+        };
+        let bits = mix(seed ^ mix(2 * index + stream));
+        if self.kind == Kind::Vogel {
+            let [c, s] = self.turns[bits as usize % TURNS];
+            Turn(c, s)
+        } else {
+            // Centred: from minus to plus half a cell.
+            Turn(centred::<T>(bits) * self.cell, centred::<T>(bits >> 16) * self.cell)
+        }
+    }
+
+    /// Offsets of one block of points in a filter of the given half sides.
+    #[inline(always)]
+    pub fn offsets<S: Simd>(
+        &self,
+        s: S,
+        block: usize,
+        Turn(a, b): Turn<T>,
+        half: [T; 2],
+    ) -> (T::V8<S>, T::V8<S>) {
+        let x = <T::V8<S> as SimdBase<S>>::load_array_ref(s, &self.x[block]);
+        let y = <T::V8<S> as SimdBase<S>>::load_array_ref(s, &self.y[block]);
+        let (a, b) = (all::<T, S>(s, a), all::<T, S>(s, b));
+        let (x, y) = match self.kind {
+            Kind::Vogel => (a * x - b * y, b * x + a * y),
+            Kind::Grid => (x + a, y + b),
+            // From [-2, 2] back into [-1, 1].
+            Kind::Box => {
+                let (x, y, half, two) =
+                    (x + a, y + b, all::<T, S>(s, T::of(0.5)), all::<T, S>(s, T::of(2.0)));
+                (x - Lanes::round(x * half) * two, y - Lanes::round(y * half) * two)
+            }
+        };
+        (x * all::<T, S>(s, half[0]), y * all::<T, S>(s, half[1]))
+    }
+
+    /// A bit for every point of a block that is not padding.
+    #[inline(always)]
+    pub fn active(&self, block: usize) -> u64 {
+        let left = self.samples - block * BLOCK;
+        if left >= BLOCK { (1 << BLOCK) - 1 } else { (1 << left) - 1 }
+    }
+}
+
+/// The lowest 16 bits as a number in (-½, ½).
+#[inline(always)]
+fn centred<T: Real>(bits: u64) -> T {
+    T::of((bits & 0xffff) as f64 + 0.5) * T::of(1.0 / 65536.0) - T::of(0.5)
+}
+
+/// Unit vectors at multiples of an angle, by repeated multiplication in double precision: the error of the last of 4096
+/// is below 1e-12.
+fn turns(n: usize, (c, s): (f64, f64)) -> impl Iterator<Item = (f64, f64)> {
+    std::iter::successors(Some((1.0, 0.0)), move |&(x, y)| Some((c * x - s * y, s * x + c * y))).take(n)
+}
+
+fn vogel(n: usize) -> Vec<(f64, f64)> {
+    let radius = |i: usize| ((i as f64 + 0.5) / n as f64).sqrt();
+    turns(n, GOLDEN).enumerate().map(|(i, (c, s))| (radius(i) * c, radius(i) * s)).collect()
+}
+
+fn lattice(n: usize) -> Vec<(f64, f64)> {
+    let even = |i: usize| (i as f64 + 0.5) / n as f64;
+    (0..n).map(|i| (2.0 * even(i) - 1.0, 2.0 * (0.5 + i as f64 * SECTION).fract() - 1.0)).collect()
+}
+
+fn grid(side: usize) -> Vec<(f64, f64)> {
+    let at = |i: usize| (2 * i + 1) as f64 / side as f64 - 1.0;
+    (0..side * side).map(|i| (at(i % side), at(i / side))).collect()
+}
+
+/// The finaliser of SplitMix64 (S. Vigna, 2015): neighbouring counters give unrelated bits.
+#[inline(always)]
+fn mix(z: u64) -> u64 {
+    let z = z.wrapping_add(0x9e37_79b9_7f4a_7c15);
+    let z = (z ^ (z >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
+    let z = (z ^ (z >> 27)).wrapping_mul(0x94d0_49bb_1331_11eb);
+    z ^ (z >> 31)
+}
