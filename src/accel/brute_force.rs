@@ -35,11 +35,14 @@ pub fn closest_hits<T: Real>(
     parallel::for_each(watch, found, rays_a_task, |first, mut found| {
         dispatch!(s => for i in 0..found.len() {
             let ray = rays.get(first + i);
-            let hit = ray::ready(&bounds, &ray).map_or(Hit::no_ray(), |(ready, heading)| {
-                let mut hit = ready.unhit();
-                single::leaf::<false, T, _>(s, &blocks, &ready, heading, ray.ignore_face, &mut hit);
-                ready.finish(hit)
-            });
+            let hit = match ray::ready(&bounds, &ray) {
+                None => Hit::no_ray(),
+                Some((ready, heading)) => {
+                    let mut hit = ready.unhit();
+                    single::leaf::<false, T, _>(s, &blocks, &ready, heading, ray.ignore_face, &mut hit);
+                    ready.finish(hit)
+                }
+            };
             found.put(i, hit);
         })
     })

@@ -6,12 +6,13 @@
 mod build;
 mod collapse;
 mod node;
+mod packet;
 mod ray;
 mod single;
 mod stream;
 
 pub mod brute_force;
-pub mod query;
+pub(crate) mod query;
 
 use crate::parallel::{self, Interrupted, Watch};
 use crate::real::Real;
@@ -117,9 +118,12 @@ impl<T: Real> Bvh<T> {
     /// Whether anything is hit.
     #[inline(always)]
     pub fn any_hit<S: Simd>(&self, s: S, ray: &Ray<T>) -> bool {
-        ray::ready(&self.bounds, ray).is_some_and(|(ready, heading)| {
-            single::trace::<true, T, S>(s, self, &ready, heading, ray.ignore_face).is_hit()
-        })
+        match ray::ready(&self.bounds, ray) {
+            None => false,
+            Some((ready, heading)) => {
+                single::trace::<true, T, S>(s, self, &ready, heading, ray.ignore_face).is_hit()
+            }
+        }
     }
 
     /// The nearest hits of a batch, which should hold at least some hundred rays.
@@ -134,15 +138,31 @@ impl<T: Real> Bvh<T> {
         self.trace_batch::<true, S>(s, rays, |i, hit| hits[i] = hit.is_hit());
     }
 
-    /// Hands every ray's hit to `answer`, in whatever order.
+    /// Hands every ray's hit to `answer`, in whatever order: runs of rays that go alike are traced as packets, the
+    /// others in turns.
     #[inline(always)]
     fn trace_batch<const ANY: bool, S: Simd>(
         &self,
         s: S,
         rays: &[Ray<T>],
-        answer: impl FnMut(usize, Hit<T>),
+        mut answer: impl FnMut(usize, Hit<T>),
     ) {
-        stream::trace::<ANY, T, S, _>(s, self, rays, answer);
+        let (runs, rest) = rays.as_chunks::<{ packet::SIZE }>();
+        let mut apart: Vec<u32> = Vec::new();
+        for (i, run) in runs.iter().enumerate() {
+            let first = i * packet::SIZE;
+            match packet::gather(s, self, run) {
+                Some(mut packet) => {
+                    packet.trace::<ANY>(s, self);
+                    for l in 0..packet::SIZE {
+                        answer(first + l, packet.hit(l));
+                    }
+                }
+                None => apart.extend((first..first + packet::SIZE).map(|i| i as u32)),
+            }
+        }
+        apart.extend((rays.len() - rest.len()..rays.len()).map(|i| i as u32));
+        stream::trace::<ANY, T, S, _>(s, self, rays, &apart, answer);
     }
 
     /// The exact bounds of all triangles: zeros if there are none.

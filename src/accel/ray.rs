@@ -33,7 +33,10 @@ pub struct Heading {
 impl Heading {
     #[inline(always)]
     pub fn of<T: Real>(d: [T; 3]) -> Self {
-        Heading { order: permutation(dominant_axis(d)), negative: d.map(|c| (c < T::zero()) as usize) }
+        Heading {
+            order: permutation(dominant_axis(d)),
+            negative: [(d[0] < T::zero()) as usize, (d[1] < T::zero()) as usize, (d[2] < T::zero()) as usize],
+        }
     }
 }
 
@@ -58,9 +61,10 @@ pub struct Ready<V> {
 #[inline(always)]
 pub fn proper<V: Lanes>(o: [V; 3], d: [V; 3], t_min: V, t_max: V) -> V::Mask {
     let longest = d[0].abs().max(d[1].abs()).max(d[2].abs());
-    let all = |v: [V; 3]| finite(v[0]) & finite(v[1]) & finite(v[2]);
-    let smallest = d[0].like(<V::Elem as Real>::MIN_POSITIVE);
-    all(o) & all(d) & smallest.less_eq(longest) & t_min.equal(t_min) & t_max.equal(t_max)
+    let (origin, direction) =
+        (finite(o[0]) & finite(o[1]) & finite(o[2]), finite(d[0]) & finite(d[1]) & finite(d[2]));
+    let smallest = longest.like(<V::Elem as Real>::MIN_POSITIVE);
+    origin & direction & smallest.less_eq(longest) & t_min.equal(t_min) & t_max.equal(t_max)
 }
 
 /// `bounds` are the scene's. The rays must be [`proper`] and of this heading.
@@ -74,41 +78,40 @@ pub fn prepare<V: Lanes>(
     t_max: V,
 ) -> Ready<V> {
     let order = heading.order;
-    let one = o[0].num(1.0);
+    let (one, eps) = (o[0].num(1.0), o[0].like(<V::Elem as Real>::EPSILON));
     let smallest = one.like(<V::Elem as Real>::MIN_POSITIVE);
     let (scale, unscale) = direction_scale(d[order[2]].abs());
-    let d = d.map(|c| c * scale);
-    let inverse = d.map(|c| one / c.abs().max(smallest).copysign(c));
+    let d = [d[0] * scale, d[1] * scale, d[2] * scale];
 
-    let reach = |k: usize| {
+    let mut reach = o;
+    for k in 0..3 {
         let (low, high) = (one.like(bounds[0][k]) - o[k], one.like(bounds[1][k]) - o[k]);
-        low.abs().max(high.abs())
-    };
-    let eps = one.like(<V::Elem as Real>::EPSILON);
-    let depth = reach(order[2]);
-    let pad = |k: usize| {
-        let p = eps.num(4.0) * eps * (reach(k) + depth) + eps * o[k].abs() + smallest;
-        if heading.negative[k] == 1 { -p } else { p }
-    };
-    let pad = [pad(0), pad(1), pad(2)];
+        reach[k] = low.abs().max(high.abs());
+    }
+    let (mut near, mut far, mut inverse) = (o, o, o);
+    for k in 0..3 {
+        let pad = one.num(4.0) * eps * (reach[k] + reach[order[2]]) + eps * o[k].abs() + smallest;
+        let pad = if heading.negative[k] == 1 { -pad } else { pad };
+        (near[k], far[k]) = (o[k] + pad, o[k] - pad);
+        inverse[k] = one / d[k].abs().max(smallest).copysign(d[k]);
+    }
 
-    let in_order = |v: [V; 3]| Vec3::new(v[order[0]], v[order[1]], v[order[2]]);
-    let (p, q) = (in_order(d), inverse[order[2]]);
+    let q = inverse[order[2]];
     // Hits beyond the largest number are misses, so that a hit's `t` is always finite.
     let t_max = t_max.min(one.like(<V::Elem as Real>::MAX)) * unscale;
     Ready {
-        near: [o[0] + pad[0], o[1] + pad[1], o[2] + pad[2]],
-        far: [o[0] - pad[0], o[1] - pad[1], o[2] - pad[2]],
+        near,
+        far,
         inverse,
-        origin: in_order(o),
-        shear: Vec3::new(p.x * q, p.y * q, q),
+        origin: Vec3::new(o[order[0]], o[order[1]], o[order[2]]),
+        shear: Vec3::new(d[order[0]] * q, d[order[1]] * q, q),
         t_min: t_min * unscale,
         t_max,
         scale,
     }
 }
 
-/// One ray and its heading; None if it is not a ray (see [`proper`]).
+/// One ray and its heading; None if it is no ray (see [`proper`]).
 #[inline(always)]
 pub fn ready<T: Real>(bounds: &[[T; 3]; 2], ray: &Ray<T>) -> Option<(Ready<T>, Heading)> {
     if !proper(ray.origin, ray.direction, ray.t_min, ray.t_max) {
@@ -132,7 +135,7 @@ impl<T: Real> Ready<T> {
     }
 }
 
-/// Entry and exit of boxes by [`Ready`]'s slabs: `near` and `far` planes in axis order, a ray in the same lanes.
+/// Entry and exit of boxes by [`Ready`]'s slabs: `near` and `far` planes, and the ray, in one order of axes.
 #[inline(always)]
 pub fn slabs<V: Lanes>(
     near: [V; 3],
@@ -141,7 +144,10 @@ pub fn slabs<V: Lanes>(
     ray_far: [V; 3],
     inverse: [V; 3],
 ) -> (V, V) {
-    let enter = |k: usize| (near[k] - ray_near[k]) * inverse[k];
-    let leave = |k: usize| (far[k] - ray_far[k]) * inverse[k];
-    (enter(0).max(enter(1)).max(enter(2)), leave(0).min(leave(1)).min(leave(2)))
+    let (mut entry, mut exit) = ((near[0] - ray_near[0]) * inverse[0], (far[0] - ray_far[0]) * inverse[0]);
+    for k in 1..3 {
+        entry = entry.max((near[k] - ray_near[k]) * inverse[k]);
+        exit = exit.min((far[k] - ray_far[k]) * inverse[k]);
+    }
+    (entry, exit)
 }

@@ -6,7 +6,6 @@ use super::{Bvh, Hit};
 use crate::geometry::ray_triangle::watertight;
 use crate::real::{Lanes, Real};
 use crate::simd::{Simd, SimdBase};
-use crate::vec::Vec3;
 
 /// Which children of a node the ray passes before `end`, as bits, and where it enters each.
 #[inline(always)]
@@ -17,16 +16,33 @@ pub fn children<T: Real, S: Simd>(
     heading: Heading,
     end: T,
 ) -> (u32, [T; 8]) {
-    let splat = |x: T| <T::V8<S> as SimdBase<S>>::splat(s, x);
-    let load = |side: usize, k: usize| <T::V8<S> as SimdBase<S>>::load_array_ref(s, &node.planes[side][k]);
-    let enter = |k: usize| (load(heading.negative[k], k) - splat(ray.near[k])) * splat(ray.inverse[k]);
-    let leave = |k: usize| (load(1 - heading.negative[k], k) - splat(ray.far[k])) * splat(ray.inverse[k]);
-    // The bare minimum and maximum of the machine: no NaN arises, and the sign of a zero does not matter here.
-    let max = |a: T::V8<S>, b: T::V8<S>| SimdBase::max(a, b);
-    let min = |a: T::V8<S>, b: T::V8<S>| SimdBase::min(a, b);
-    let entry = max(max(enter(0), enter(1)), max(enter(2), splat(ray.t_min)));
-    let exit = min(min(leave(0), leave(1)), min(leave(2), splat(end)));
+    let end = splat8::<T, S>(s, end);
+    let (mut entry, mut exit) = (splat8::<T, S>(s, ray.t_min), end);
+    for k in 0..3 {
+        let side = heading.negative[k];
+        let inverse = splat8::<T, S>(s, ray.inverse[k]);
+        let near = (planes(s, node, side, k) - splat8::<T, S>(s, ray.near[k])) * inverse;
+        let far = (planes(s, node, 1 - side, k) - splat8::<T, S>(s, ray.far[k])) * inverse;
+        // The bare minimum and maximum of the machine: no NaN arises, and the sign of a zero does not matter here.
+        (entry, exit) = (SimdBase::max(entry, near), SimdBase::min(exit, far));
+    }
     (T::V8::<S>::bits(Lanes::less_eq(entry, exit)), entry.to_array())
+}
+
+#[inline(always)]
+pub fn splat8<T: Real, S: Simd>(s: S, x: T) -> T::V8<S> {
+    SimdBase::splat(s, x)
+}
+
+#[inline(always)]
+fn splat4<T: Real, S: Simd>(s: S, x: T) -> T::V4<S> {
+    SimdBase::splat(s, x)
+}
+
+/// The lower (0) or upper (1) planes of a node's boxes on one axis.
+#[inline(always)]
+pub fn planes<T: Real, S: Simd>(s: S, node: &Node<T>, side: usize, axis: usize) -> T::V8<S> {
+    SimdBase::load_array_ref(s, &node.planes[side][axis])
 }
 
 /// Tests the triangles of a leaf, and keeps the nearest hit. With `ANY`, returns true at the first.
@@ -39,31 +55,31 @@ pub fn leaf<const ANY: bool, T: Real, S: Simd>(
     ignore: i32,
     hit: &mut Hit<T>,
 ) -> bool {
-    let splat = |x: T| <T::V4<S> as SimdBase<S>>::splat(s, x);
-    let [kx, ky, kz] = heading.order;
-    let (origin, shear) = (ray.origin.map(splat), ray.shear.map(splat));
+    let order = heading.order;
+    let origin = splat4x3::<T, S>(s, ray.origin.to_array());
+    let shear = splat4x3::<T, S>(s, ray.shear.to_array());
     for block in blocks {
-        let corner = |j: usize| {
-            let [x, y, z] =
-                [kx, ky, kz].map(|k| <T::V4<S> as SimdBase<S>>::load_array_ref(s, &block.vertices[j][k]));
-            Vec3::new(x, y, z)
+        let (a, b, c) = (corner(s, block, 0, order), corner(s, block, 1, order), corner(s, block, 2, order));
+        let Some((mask, x)) = watertight(origin.into(), shear.into(), a.into(), b.into(), c.into()) else {
+            continue;
         };
-        let (a, b, c) = (corner(0), corner(1), corner(2));
-        let Some((mask, x)) = watertight(origin, shear, a, b, c) else { continue };
-        let mask = mask & Lanes::less(splat(ray.t_min), x.t) & Lanes::less_eq(x.t, splat(hit.t));
+        let end = splat4::<T, S>(s, hit.t);
+        let mask = mask & Lanes::less(splat4::<T, S>(s, ray.t_min), x.t) & Lanes::less_eq(x.t, end);
         if T::V4::<S>::bits(mask) == 0 {
             continue;
         }
         // The hit must pass its triangle's own box, by the arithmetic of the nodes.
-        let (low, high) = corners_box(a.to_array(), b.to_array(), c.to_array());
-        let flip = heading.order.map(|k| heading.negative[k] == 1);
-        let of = |v: [T; 3]| heading.order.map(|k| splat(v[k]));
-        let near = std::array::from_fn(|i| if flip[i] { high[i] } else { low[i] });
-        let far = std::array::from_fn(|i| if flip[i] { low[i] } else { high[i] });
-        let (entry, exit) = slabs(near, far, of(ray.near), of(ray.far), of(ray.inverse));
-        let passed = Lanes::less_eq(entry, exit) & Lanes::less_eq(splat(ray.t_min), exit);
+        let (near, far) = own_box(heading, a, b, c);
+        let (entry, exit) = slabs(
+            near,
+            far,
+            splat4x3::<T, S>(s, in_order(order, ray.near)),
+            splat4x3::<T, S>(s, in_order(order, ray.far)),
+            splat4x3::<T, S>(s, in_order(order, ray.inverse)),
+        );
+        let passed = Lanes::less_eq(entry, exit) & Lanes::less_eq(splat4::<T, S>(s, ray.t_min), exit);
         let t = Lanes::max(x.t, entry);
-        let mut bits = T::V4::<S>::bits(mask & passed & Lanes::less_eq(t, splat(hit.t)));
+        let mut bits = T::V4::<S>::bits(mask & passed & Lanes::less_eq(t, end));
         let (t, u, v) = (t.to_array(), x.u.to_array(), x.v.to_array());
         while bits != 0 {
             let l = bits.trailing_zeros() as usize;
@@ -80,10 +96,38 @@ pub fn leaf<const ANY: bool, T: Real, S: Simd>(
     false
 }
 
-/// The bounds of triangles, component by component.
 #[inline(always)]
-pub fn corners_box<V: Lanes>(a: [V; 3], b: [V; 3], c: [V; 3]) -> ([V; 3], [V; 3]) {
-    (std::array::from_fn(|k| a[k].min(b[k]).min(c[k])), std::array::from_fn(|k| a[k].max(b[k]).max(c[k])))
+pub fn in_order<X: Copy>(order: [usize; 3], v: [X; 3]) -> [X; 3] {
+    [v[order[0]], v[order[1]], v[order[2]]]
+}
+
+#[inline(always)]
+fn splat4x3<T: Real, S: Simd>(s: S, v: [T; 3]) -> [T::V4<S>; 3] {
+    [splat4::<T, S>(s, v[0]), splat4::<T, S>(s, v[1]), splat4::<T, S>(s, v[2])]
+}
+
+/// One vertex of each of four triangles.
+#[inline(always)]
+fn corner<T: Real, S: Simd>(s: S, block: &Block<T>, vertex: usize, order: [usize; 3]) -> [T::V4<S>; 3] {
+    let [x, y, z] = in_order(order, [0, 1, 2]);
+    let v = &block.vertices[vertex];
+    [
+        SimdBase::load_array_ref(s, &v[x]),
+        SimdBase::load_array_ref(s, &v[y]),
+        SimdBase::load_array_ref(s, &v[z]),
+    ]
+}
+
+/// The planes of triangles' own boxes that rays of a heading enter and leave through, like the corners in its order.
+#[inline(always)]
+pub fn own_box<V: Lanes>(heading: Heading, a: [V; 3], b: [V; 3], c: [V; 3]) -> ([V; 3], [V; 3]) {
+    let (mut near, mut far) = (a, a);
+    for i in 0..3 {
+        let (low, high) = (a[i].min(b[i]).min(c[i]), a[i].max(b[i]).max(c[i]));
+        let ahead = heading.negative[heading.order[i]] == 0;
+        (near[i], far[i]) = if ahead { (low, high) } else { (high, low) };
+    }
+    (near, far)
 }
 
 /// The ray through the whole tree.

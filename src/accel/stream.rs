@@ -67,19 +67,20 @@ impl<T: Real> Row<T> {
     }
 }
 
-/// Traces all rays and hands each answer, with its ray's index, to `answer`.
+/// Traces the `chosen` rays and hands each answer, with its ray's index, to `answer`.
 #[inline(always)]
 pub fn trace<const ANY: bool, T: Real, S: Simd, F: FnMut(usize, Hit<T>)>(
     s: S,
     tree: &Bvh<T>,
     rays: &[Ray<T>],
+    chosen: &[u32],
     mut answer: F,
 ) {
     let mut next = 0;
     // The next proper ray; rays that are none are answered at once.
     let mut take = |answer: &mut F| {
-        while next < rays.len() {
-            let index = next;
+        while next < chosen.len() {
+            let index = chosen[next] as usize;
             next += 1;
             match ready(&tree.bounds, &rays[index]) {
                 Some(made) => return Some((index, rays[index].ignore_face, made)),

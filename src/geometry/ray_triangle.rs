@@ -45,6 +45,18 @@ pub fn dominant_axis<T: Real>(d: [T; 3]) -> usize {
     }
 }
 
+/// Lanes in which [`dominant_axis`] is `axis`.
+#[inline(always)]
+pub fn along<V: Lanes>(axis: usize, d: [V; 3]) -> V::Mask {
+    let (x, y, z) = (d[0].abs(), d[1].abs(), d[2].abs());
+    let (xy, xz, yz) = (y.less(x), z.less(x), z.less(y));
+    match axis {
+        0 => xy & xz,
+        1 => !xy & yz,
+        _ => (xy & !xz) | (!xy & !yz),
+    }
+}
+
 /// The cyclic order of axes that ends in the dominant one.
 #[inline(always)]
 pub fn permutation(kz: usize) -> [usize; 3] {
@@ -93,12 +105,7 @@ pub fn watertight<V: Lanes>(
     let mut ea = cx * by - cy * bx;
     let mut eb = ax * cy - ay * cx;
     let mut ec = bx * ay - by * ax;
-    let one_side = |ea: V, eb: V, ec: V| {
-        let negative = ea.less(zero) | eb.less(zero) | ec.less(zero);
-        let positive = zero.less(ea) | zero.less(eb) | zero.less(ec);
-        !(negative & positive)
-    };
-    let mut inside = one_side(ea, eb, ec);
+    let mut inside = one_side(zero, ea, eb, ec);
     if V::bits(inside) == 0 {
         return None;
     }
@@ -107,7 +114,7 @@ pub fn watertight<V: Lanes>(
         ea = V::select(ea.equal(zero), product_error(cx, by) - product_error(cy, bx), ea);
         eb = V::select(eb.equal(zero), product_error(ax, cy) - product_error(ay, cx), eb);
         ec = V::select(ec.equal(zero), product_error(bx, ay) - product_error(by, ax), ec);
-        inside = inside & one_side(ea, eb, ec);
+        inside = inside & one_side(zero, ea, eb, ec);
     }
 
     // Quotients rather than products with 1 / det, which overflows on slivers.
@@ -121,19 +128,30 @@ pub fn watertight<V: Lanes>(
     Some((inside, Crossing { t, u, v }))
 }
 
+/// Lanes in which no two of three edge functions have opposite signs; NaN has none.
+#[inline(always)]
+fn one_side<V: Lanes>(zero: V, ea: V, eb: V, ec: V) -> V::Mask {
+    let negative = ea.less(zero) | eb.less(zero) | ec.less(zero);
+    let positive = zero.less(ea) | zero.less(eb) | zero.less(ec);
+    !(negative & positive)
+}
+
 /// `a b - fl(a b)`, exact unless parts of it underflow.
 /// T. J. Dekker, *A Floating-Point Technique for Extending the Available Precision*, 1971.
 #[inline(always)]
 fn product_error<V: Lanes>(a: V, b: V) -> V {
-    // 2^ceil(digits / 2) + 1 cuts the significand into halves whose products are exact: 4097 or 2^27 + 1.
-    let cutter = if <V::Elem as Real>::EPSILON.to_f64() > 1e-10 { 4097.0 } else { 134217729.0 };
-    let halves = |x: V| {
-        let c = x * x.num(cutter);
-        let high = c - (c - x);
-        (high, x - high)
-    };
     let ((ah, al), (bh, bl)) = (halves(a), halves(b));
     ((ah * bh - a * b) + ah * bl + al * bh) + al * bl
+}
+
+/// The upper and the lower half of a significand: products of such halves are exact.
+#[inline(always)]
+fn halves<V: Lanes>(x: V) -> (V, V) {
+    // 2^ceil(digits / 2) + 1.
+    let cutter = if <V::Elem as Real>::EPSILON.to_f64() > 1e-10 { 4097.0 } else { 134217729.0 };
+    let c = x * x.num(cutter);
+    let high = c - (c - x);
+    (high, x - high)
 }
 
 #[inline(always)]
