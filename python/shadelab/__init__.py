@@ -13,6 +13,8 @@ color
     Transfer functions, luminance, tone mapping.
 geometry
     Ray tests and barycentrics.
+mesh
+    The triangle mesh: normals and primitives.
 accel
     Structures for ray queries: a watertight BVH, equal to brute force to the bit.
 brdf
@@ -29,7 +31,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, Any
 
-from . import accel, brdf, color, geometry, image, raster, sampling, shadow, transform
+from . import accel, brdf, color, geometry, image, mesh, raster, sampling, shadow, transform
 from ._runtime import set_threads, simd, simd_level, simd_levels, threads
 
 if TYPE_CHECKING:
@@ -41,6 +43,7 @@ __all__ = [
     "color",
     "geometry",
     "image",
+    "mesh",
     "raster",
     "sampling",
     "set_threads",
