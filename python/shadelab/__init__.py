@@ -19,6 +19,8 @@ accel
     Structures for ray queries: a watertight BVH, equal to brute force to the bit.
 brdf
     Reflection models: evaluation, sampling, density.
+light
+    Point, directional and rectangular lights: irradiance, sampling, unshadowed radiance.
 raster
     The pipeline: coverage, depth, interpolation, G-buffer.
 shadow
@@ -31,7 +33,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, Any
 
-from . import accel, brdf, color, geometry, image, mesh, raster, sampling, shadow, transform
+from . import accel, brdf, color, geometry, image, light, mesh, raster, sampling, shadow, transform
 from ._runtime import set_threads, simd, simd_level, simd_levels, threads
 
 if TYPE_CHECKING:
@@ -43,6 +45,7 @@ __all__ = [
     "color",
     "geometry",
     "image",
+    "light",
     "mesh",
     "raster",
     "sampling",

@@ -171,7 +171,7 @@ def ggx(
     Examples
     --------
     >>> ggx([0, 0, 1], [0, 0, 1], 0.5).round(4)
-    array([1.2732, 1.2732, 1.2732])
+    array([0.3183, 0.3183, 0.3183])
     """
     _arrays.choice("masking", masking, ("height_correlated", "separable"))
     shape, (wi, wo, f0, alpha), dtype = _gather(
@@ -253,8 +253,8 @@ def ggx_pdf(wi: ArrayLike, wo: ArrayLike, alpha: ArrayLike) -> Floats:
 
     Examples
     --------
-    >>> ggx_pdf([0, 0, 1], [0, 0, 1], 1.0).round(4)
-    array(0.0796)
+    >>> float(ggx_pdf([0, 0, 1], [0, 0, 1], 1.0).round(4))
+    0.0796
     """
     shape, (wi, wo, alpha), dtype = _gather({"wi": (wi, 3), "wo": (wo, 3)}, {"alpha": alpha}, lows=("alpha",))
     out = _arrays.output("out", None, alpha.shape, dtype)
@@ -407,8 +407,8 @@ def metallic_roughness_pdf(
 
     Examples
     --------
-    >>> metallic_roughness_pdf([0, 0, 1], [0, 0, 1], [0.8, 0.8, 0.8], specular=0.0).round(4)
-    array(0.3183)
+    >>> float(metallic_roughness_pdf([0, 0, 1], [0, 0, 1], [0.8, 0.8, 0.8], specular=0.0).round(4))
+    0.3183
     """
     shape, flat, dtype = _gather(
         {"wi": (wi, 3), "wo": (wo, 3), "base_color": (base_color, 3)},

@@ -1,0 +1,141 @@
+//! What a polygon of even radiance sends to a point: the moments ∫ cosⁿθ dω over the part of it above the horizon, in
+//! closed form. Order 0 is the solid angle, order 1 Lambert's irradiance; the higher orders integrate any polynomial of
+//! the cosine, such as Schlick's Fresnel.
+//!
+//! Stokes' theorem on the sphere turns each into a sum over the edges' arcs: with c = cos θ and an edge's unit normal e,
+//! (n + 1) τⁿ = (n − 1) τⁿ⁻² + Σ e_z ∫ cⁿ⁻¹ ds, and the arcs' integrals follow a recurrence of their own. Edges are
+//! clipped exactly at the horizon; the arcs along it count for order 1 alone.
+//!
+//! Always in double, whatever the arrays' precision: the sum cancels where the polygon is small, and is good to about
+//! 10⁻¹⁵ over the solid angle.
+//!
+//! J. H. Lambert, *Photometria*, 1760; J. Arvo, *Applications of irradiance tensors to the simulation of non-Lambertian
+//! phenomena*, 1995.
+
+use crate::brdf::frame::Frame;
+use crate::dispatch;
+use crate::math;
+use crate::parallel::{self, Interrupted, Watch};
+use crate::real::Real;
+use crate::vec::Vec3;
+
+/// Orders 0 … 6.
+pub const ORDERS: usize = 7;
+
+/// Sums over the edges of the clipped polygon, as they are walked.
+struct Walk {
+    /// Σ e_z ∫ cᵏ ds for k = 0 … 5.
+    arcs: [f64; ORDERS - 1],
+    solid_angle: f64,
+    /// The first corner of the clipped polygon and the last one so far, unit.
+    ends: Option<(Vec3<f64>, Vec3<f64>)>,
+}
+
+impl Walk {
+    fn to(&mut self, corner: Vec3<f64>) {
+        match self.ends {
+            None => self.ends = Some((corner, corner)),
+            Some((first, last)) => {
+                self.arc(last, corner);
+                self.ends = Some((first, corner));
+            }
+        }
+    }
+
+    /// Adds the arc from `a` to `b`.
+    fn arc(&mut self, a: Vec3<f64>, b: Vec3<f64>) {
+        let normal = a.cross(b);
+        let sine = normal.length();
+        if sine == 0.0 {
+            return;
+        }
+        let angle = math::atan2(sine, a.dot(b));
+        let e = normal * (1.0 / sine);
+        // The triangle of the arc and the pole, no corner of which is farther than a right angle from it (van Oosterom
+        // and Strackee 1983).
+        self.solid_angle += 2.0 * math::atan2(normal.z, 1.0 + a.z + b.z + a.dot(b));
+        // c and its derivative along the arc, at both ends.
+        let (c0, c1) = (a.z, b.z);
+        let (d0, d1) = (e.x * a.y - e.y * a.x, e.x * b.y - e.y * b.x);
+        let largest = e.x * e.x + e.y * e.y;
+        let mut integral = [angle, d0 - d1, 0.0, 0.0, 0.0, 0.0];
+        let (mut p0, mut p1) = (c0, c1);
+        for k in 2..integral.len() {
+            integral[k] = ((k - 1) as f64 * largest * integral[k - 2] - (p1 * d1 - p0 * d0)) / k as f64;
+            (p0, p1) = (p0 * c0, p1 * c1);
+        }
+        for (sum, integral) in self.arcs.iter_mut().zip(integral) {
+            *sum += e.z * integral;
+        }
+    }
+}
+
+/// Moments of orders 0 … 6 of a polygon whose corners are given from the point, the normal being z. Positive for a
+/// polygon that is counter-clockwise as seen from the point.
+pub fn moments(corners: &[Vec3<f64>]) -> [f64; ORDERS] {
+    let mut walk = Walk { arcs: [0.0; ORDERS - 1], solid_angle: 0.0, ends: None };
+    let mut before = corners[corners.len() - 1];
+    for &corner in corners {
+        if (before.z > 0.0) != (corner.z > 0.0) {
+            // On the horizon to the bit.
+            let t = before.z / (before.z - corner.z);
+            let mut crossing = before + (corner - before) * t;
+            crossing.z = 0.0;
+            walk.to(crossing.normalize());
+        }
+        if corner.z > 0.0 {
+            walk.to(corner.normalize());
+        }
+        before = corner;
+    }
+    if let Some((first, _)) = walk.ends {
+        walk.to(first);
+    }
+    // Seen from the point, counter-clockwise is clockwise about the normal.
+    let mut moment = [-walk.solid_angle, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0];
+    for n in 1..ORDERS {
+        let lower = if n >= 2 { (n - 1) as f64 * moment[n - 2] } else { 0.0 };
+        moment[n] = (lower - walk.arcs[n - 1]) / (n + 1) as f64;
+    }
+    moment
+}
+
+/// The corners as seen from a point with a unit normal.
+#[inline(always)]
+pub fn seen_from<const N: usize>(
+    corners: [Vec3<f64>; N],
+    point: Vec3<f64>,
+    normal: Vec3<f64>,
+) -> [Vec3<f64>; N] {
+    let frame = Frame::about(normal);
+    corners.map(|c| frame.local(c - point))
+}
+
+/// Moments 0 … 6 of one polygon at many points; negative where its back is seen, zero in its plane.
+pub fn polygon_moments_many<T: Real>(
+    watch: &mut dyn Watch,
+    corners: &[Vec3<f64>],
+    points: &[[T; 3]],
+    normals: &[[T; 3]],
+    out: &mut [[T; ORDERS]],
+) -> Result<(), Interrupted> {
+    parallel::for_each(watch, (points, normals, out), 1 << 11, |_, (points, normals, out)| {
+        let mut local = vec![Vec3::splat(0.0); corners.len()];
+        dispatch!(_s => {
+            for i in 0..out.len() {
+                let (point, normal) = (double(points[i]), double(normals[i]));
+                let frame = Frame::about(normal);
+                for (local, &corner) in local.iter_mut().zip(corners) {
+                    *local = frame.local(corner - point);
+                }
+                let nan = (point + normal).dot(Vec3::splat(0.0));
+                out[i] = if nan.is_nan() { [T::NAN; ORDERS] } else { moments(&local).map(T::of) };
+            }
+        })
+    })
+}
+
+#[inline(always)]
+pub fn double<T: Real>(v: [T; 3]) -> Vec3<f64> {
+    Vec3::from(v.map(T::to_f64))
+}

@@ -1,0 +1,168 @@
+//! The radiance that surfaces reflect from lights with nothing in between: the first factor of real-time direct light.
+//!
+//! Punctual lights, and the diffuse part of rectangles with its Fresnel factor, are in closed form (the factor is a
+//! polynomial of the cosine: see [`super::polygon`]). The mirrors' part of a rectangle is an average of `samples` points
+//! of the light and as many directions of the lobe, weighed by the balance heuristic; its error falls
+//! faster than 1/√samples, since both are scrambled Sobol' points, a scramble of its own for every receiver.
+//!
+//! E. Veach, L. Guibas, *Optimally combining sampling techniques for Monte Carlo rendering*, 1995.
+
+use super::Light;
+use super::irradiance::rect_moments;
+use super::rect::Rect;
+use crate::brdf::frame::Frame;
+use crate::brdf::ggx;
+use crate::brdf::metallic_roughness::{Lobes, Materials};
+use crate::dispatch;
+use crate::parallel::{self, Interrupted, Watch};
+use crate::real::Real;
+use crate::sampling::sobol::{Scramble, columns, sobol};
+use crate::vec::Vec3;
+
+/// Where surfaces are seen from.
+#[derive(Clone, Copy)]
+pub enum Viewer<'a, T> {
+    Eye(Vec3<T>),
+    /// Unit directions to the eye, one for each receiver.
+    Directions(&'a [[T; 3]]),
+}
+
+/// Oriented points of surfaces, as arrays of equal length.
+#[derive(Clone, Copy)]
+pub struct Receivers<'a, T> {
+    pub points: &'a [[T; 3]],
+    /// Unit.
+    pub normals: &'a [[T; 3]],
+    pub viewer: Viewer<'a, T>,
+    /// Rows of the materials; a negative row is no surface. None: one material for all, or one each.
+    pub material_ids: Option<&'a [i32]>,
+    pub materials: Materials<'a, T>,
+}
+
+/// One of them, made ready.
+#[derive(Clone, Copy)]
+pub struct Receiver<T> {
+    pub point: Vec3<T>,
+    pub frame: Frame<T>,
+    /// In the frame.
+    pub wo: Vec3<T>,
+    pub lobes: Lobes<T>,
+}
+
+impl<T: Real> Receivers<'_, T> {
+    /// None where there is no surface.
+    #[inline(always)]
+    pub fn at(&self, i: usize) -> Option<Receiver<T>> {
+        let rows = self.materials.metallic.len();
+        let row = match self.material_ids {
+            Some(ids) => usize::try_from(ids[i]).ok()?,
+            None => i.min(rows - 1),
+        };
+        let point = Vec3::from(self.points[i]);
+        let wo = match self.viewer {
+            Viewer::Eye(eye) => (eye - point).normalize(),
+            Viewer::Directions(wo) => wo[i].into(),
+        };
+        let frame = Frame::about(self.normals[i].into());
+        let lobes = self.materials.at(row).checked().lobes();
+        Some(Receiver { point, frame, wo: frame.local(wo), lobes })
+    }
+}
+
+/// Sobol' points before scrambling, in three dimensions: computed once, scrambled for every receiver.
+pub fn digits(start: u32, count: u32) -> Vec<[u32; 3]> {
+    let table = columns();
+    (0..count).map(|i| [0, 1, 2].map(|d| sobol(start.wrapping_add(i), &table[d]))).collect()
+}
+
+impl<T: Real> Receiver<T> {
+    /// Radiance towards the eye from one light.
+    #[inline(always)]
+    pub fn unshadowed(&self, light: &Light<T>, stream: u64, seed: u64, digits: &[[u32; 3]]) -> Vec3<T> {
+        match light {
+            Light::Rect(rect) => self.diffuse_of_rect(rect) + self.mirrored_rect(rect, stream, seed, digits),
+            _ => self.beam(light).map_or(Vec3::splat(T::zero()), |(radiance, ..)| radiance),
+        }
+    }
+
+    /// Radiance from a punctual light, with the direction to it and its distance; none from below the horizon.
+    #[inline(always)]
+    pub fn beam(&self, light: &Light<T>) -> Option<(Vec3<T>, Vec3<T>, T)> {
+        let beam = light.beam(self.point)?;
+        let wi = self.frame.local(beam.wi);
+        let f = self.lobes.eval(wi, self.wo);
+        (!(wi.z <= T::zero())).then(|| (f.times(beam.irradiance) * wi.z, beam.wi, beam.distance))
+    }
+
+    /// The diffuse part: base/π (1 − F(wo)) ∫ (1 − F(c)) c dω, with (1 − c)⁵ c written in powers of c.
+    #[inline(always)]
+    fn diffuse_of_rect(&self, rect: &Rect<T>) -> Vec3<T> {
+        if self.wo.z <= T::zero() {
+            return Vec3::splat(T::zero());
+        }
+        let m = rect_moments(rect, self.point, self.frame.z);
+        let grazing = m[1] - 5.0 * m[2] + 10.0 * m[3] - 10.0 * m[4] + 5.0 * m[5] - m[6];
+        let (f0, f90) = (self.lobes.base_f0.to_f64(), self.lobes.base_f90.to_f64());
+        let through = (1.0 - f0) * m[1] - (f90 - f0) * grazing;
+        let factor = T::of(through) * self.lobes.transmitted(self.wo.z) / T::PI;
+        self.lobes.diffuse.times(rect.radiance) * factor
+    }
+
+    /// The mirrors' part, by sampling the light and the lobe.
+    #[inline(always)]
+    fn mirrored_rect(&self, rect: &Rect<T>, stream: u64, seed: u64, digits: &[[u32; 3]]) -> Vec3<T> {
+        let none = Vec3::splat(T::zero());
+        if !self.lobes.is_specular() || self.wo.z <= T::zero() || digits.is_empty() {
+            return none;
+        }
+        let scramble: [Scramble; 4] = std::array::from_fn(|d| Scramble::new(seed, stream, d as u32));
+        let mut sum = none;
+        for x in digits {
+            let sighting = rect.sample(self.point, [scramble[0].fraction(x[0]), scramble[1].fraction(x[1])]);
+            if let Some(s) = sighting {
+                let wi = self.frame.local(s.wi);
+                if wi.z > T::zero() {
+                    let weight = wi.z / (s.pdf + ggx::ggx_pdf(wi, self.wo, self.lobes.alpha));
+                    sum = sum + self.lobes.specular(wi, self.wo) * weight;
+                }
+            }
+            let u = [scramble[2].fraction(x[0]), scramble[3].fraction(x[1])];
+            let wi = ggx::ggx_sample(self.wo, u, self.lobes.alpha);
+            if wi.z > T::zero() {
+                if let Some(s) = rect.meet(self.point, self.frame.world(wi)) {
+                    let weight = wi.z / (s.pdf + ggx::ggx_pdf(wi, self.wo, self.lobes.alpha));
+                    sum = sum + self.lobes.specular(wi, self.wo) * weight;
+                }
+            }
+        }
+        sum.times(rect.radiance) * (T::one() / T::of(digits.len() as f64))
+    }
+}
+
+/// Radiance towards the eye from all lights; zero where there is no surface.
+pub fn unshadowed_many<T: Real>(
+    watch: &mut dyn Watch,
+    receivers: &Receivers<'_, T>,
+    lights: &[Light<T>],
+    samples: u32,
+    seed: u64,
+    out: &mut [[T; 3]],
+) -> Result<(), Interrupted> {
+    let digits = digits(0, samples);
+    // About a microsecond for every light and ten samples.
+    let piece = (4096 / (1 + lights.len() * (1 + samples as usize / 16))).max(64);
+    parallel::for_each(watch, out, piece, |first, out| {
+        dispatch!(_s => {
+            for (i, out) in (first..).zip(out.iter_mut()) {
+                *out = receivers.at(i).map_or([T::zero(); 3], |r| {
+                    let mut sum = Vec3::splat(T::zero());
+                    for (k, light) in lights.iter().enumerate() {
+                        let stream = (k as u64) << 40 | i as u64;
+                        sum = sum + r.unshadowed(light, stream, seed, &digits);
+                    }
+                    sum.to_array()
+                });
+            }
+        })
+    })
+}
