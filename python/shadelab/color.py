@@ -62,8 +62,8 @@ def encode_transfer(
     Notes
     -----
     Negative light mirrors, light beyond one continues the curve, NaN stays. Within 5 ulp of the exact curve up to 1e6
-    (0.6 ulp where it is a line). The two pieces of sRGB meet with a jump of 3e-8, which the standard's rounded constants make.
-    About 4 ns a value and thread in float32.
+    (0.6 ulp where it is a line). The two pieces of sRGB meet with a jump of 3e-8, which the standard's rounded
+    constants make. About 4 ns a value and thread in float32.
 
     References
     ----------
@@ -108,8 +108,8 @@ def decode_transfer(
     Notes
     -----
     Negative values mirror, values beyond one continue the curve, NaN stays. Within 8 ulp of the exact curve up to 1e6.
-    A signal within 4e-8 of the join of the two pieces may come back from a round trip on the other piece. About 4 ns a value
-    and thread in float32.
+    A signal within 4e-8 of the join of the two pieces may come back from a round trip on the other piece. About 4 ns
+    a value and thread in float32.
 
     References
     ----------
