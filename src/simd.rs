@@ -6,6 +6,7 @@
 //!
 //! `SHADELAB_SIMD=baseline|avx2` and [`force`] choose a level; a level that the machine lacks is refused.
 
+use crate::real::Real;
 use std::sync::atomic::{AtomicU8, Ordering};
 
 pub use fearless_simd::prelude::*;
@@ -71,6 +72,43 @@ pub fn force(level: Option<Level>) -> bool {
         CURRENT.store(level as u8, Ordering::Relaxed);
     }
     level.available()
+}
+
+/// `out[i] = f(x[i])`, eight explicit lanes at a time: for functions too long for the compiler to vectorise a scalar
+/// loop of them. A last, shorter group is padded with ones.
+#[inline(always)]
+pub fn map_lanes<T: Real, S: Simd>(s: S, x: &[T], out: &mut [T], f: impl Fn(T::V8<S>) -> T::V8<S>) {
+    // A closure that were not inlined would leave the dispatch, and with it its instructions.
+    zip_lanes(
+        s,
+        x,
+        x,
+        out,
+        #[inline(always)]
+        |x, _| f(x),
+    );
+}
+
+/// `out[i] = f(a[i], b[i])`, as [`map_lanes`].
+#[inline(always)]
+pub fn zip_lanes<T: Real, S: Simd>(
+    s: S,
+    a: &[T],
+    b: &[T],
+    out: &mut [T],
+    f: impl Fn(T::V8<S>, T::V8<S>) -> T::V8<S>,
+) {
+    let ((a, a_rest), (b, b_rest), (out, tail)) = (a.as_chunks(), b.as_chunks(), out.as_chunks_mut());
+    for ((out, a), b) in out.iter_mut().zip(a).zip(b) {
+        *out = f(T::V8::load_array_ref(s, a), T::V8::load_array_ref(s, b)).to_array();
+    }
+    if !tail.is_empty() {
+        let (mut a, mut b) = ([T::one(); 8], [T::one(); 8]);
+        a[..a_rest.len()].copy_from_slice(a_rest);
+        b[..b_rest.len()].copy_from_slice(b_rest);
+        let last = f(T::V8::load_array(s, a), T::V8::load_array(s, b)).to_array();
+        tail.copy_from_slice(&last[..tail.len()]);
+    }
 }
 
 /// `dispatch!(s => body)` runs `body` with the SIMD token `s` of the level in force. `body` should be one call of

@@ -8,6 +8,7 @@ use crate::dispatch;
 use crate::math::pow;
 use crate::parallel::{self, Interrupted, Watch};
 use crate::real::{Lanes, Real};
+use crate::simd::{Simd, map_lanes};
 
 /// Which curve, and which way.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -42,21 +43,32 @@ pub fn transfer_many<T: Real>(
     x: &[T],
     out: &mut [T],
 ) -> Result<(), Interrupted> {
-    parallel::for_each(watch, (x, out), 1 << 15, |_, (x, out)| dispatch!(_s => body(curve, x, out)))
+    parallel::for_each(watch, (x, out), 1 << 15, |_, (x, out)| dispatch!(s => body(s, curve, x, out)))
 }
 
 #[inline(always)]
-fn body<T: Real>(curve: Transfer, x: &[T], out: &mut [T]) {
+fn body<T: Real, S: Simd>(s: S, curve: Transfer, x: &[T], out: &mut [T]) {
     match curve {
-        Transfer::EncodeSrgb => each(x, out, encode_srgb),
-        Transfer::DecodeSrgb => each(x, out, decode_srgb),
-        Transfer::Power(e) => each(x, out, |x: T| pow(Lanes::abs(x), T::of(e)).copysign(x)),
-    }
-}
-
-#[inline(always)]
-fn each<T: Real>(x: &[T], out: &mut [T], f: impl Fn(T) -> T) {
-    for (out, &x) in out.iter_mut().zip(x) {
-        *out = f(x);
+        Transfer::EncodeSrgb => map_lanes(
+            s,
+            x,
+            out,
+            #[inline(always)]
+            |x| encode_srgb(x),
+        ),
+        Transfer::DecodeSrgb => map_lanes(
+            s,
+            x,
+            out,
+            #[inline(always)]
+            |x| decode_srgb(x),
+        ),
+        Transfer::Power(e) => map_lanes(
+            s,
+            x,
+            out,
+            #[inline(always)]
+            |x| Lanes::copysign(pow(Lanes::abs(x), x.num(e)), x),
+        ),
     }
 }
