@@ -21,6 +21,8 @@ brdf
     Reflection models: evaluation, sampling, density.
 light
     Point, directional and rectangular lights: irradiance, sampling, unshadowed radiance.
+scene
+    Scenes, cameras, materials, instances; loading and saving.
 raster
     The pipeline: coverage, depth, interpolation, G-buffer.
 shadow
@@ -33,8 +35,9 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, Any
 
-from . import accel, brdf, color, geometry, image, light, mesh, raster, sampling, shadow, transform
+from . import accel, brdf, color, geometry, image, light, mesh, raster, sampling, scene, shadow, transform
 from ._runtime import set_threads, simd, simd_level, simd_levels, threads
+from .scene import load
 
 if TYPE_CHECKING:
     from . import study
@@ -46,9 +49,11 @@ __all__ = [
     "geometry",
     "image",
     "light",
+    "load",
     "mesh",
     "raster",
     "sampling",
+    "scene",
     "set_threads",
     "shadow",
     "simd",

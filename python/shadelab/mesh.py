@@ -112,7 +112,10 @@ class Mesh:
         target = np.dtype(dtype)
         if target not in (np.dtype(np.float32), np.dtype(np.float64)):
             raise TypeError(f"dtype: expected float32 or float64, got {target}")
-        convert = lambda a: None if a is None else a.astype(target)  # noqa: E731
+
+        def convert(a: Floats | None) -> Floats | None:
+            return None if a is None else a.astype(target)
+
         return replace(
             self,
             positions=self.positions.astype(target),
@@ -183,7 +186,7 @@ def face_normals(positions: ArrayLike, faces: ArrayLike, *, out: NDArray[Any] | 
 
     Examples
     --------
-    >>> face_normals([[0, 0, 0], [1, 0, 0], [0, 1, 0]], [[0, 1, 2]])
+    >>> face_normals([[0, 0, 0], [1, 0, 0], [0, 1, 0]], [[0, 1, 2]]) + 0.0
     array([[0., 0., 1.]])
     """
     p, f = _checked(positions, faces)
