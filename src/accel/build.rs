@@ -6,7 +6,8 @@
 //!
 //! I. Wald, *On fast Construction of SAH-based Bounding Volume Hierarchies*, 2007.
 
-use super::node::{BLOCK, MAX_DEPTH};
+use super::cut::{Costs, Cut};
+use super::node::{BLOCK, Child, MAX_DEPTH};
 use crate::real::Real;
 use std::sync::atomic::{AtomicBool, Ordering};
 
@@ -36,7 +37,7 @@ impl Bounds {
     }
     /// Half the surface.
     #[inline(always)]
-    pub fn area(&self) -> f32 {
+    fn area(&self) -> f32 {
         let [x, y, z] = std::array::from_fn(|k| (self.high[k] - self.low[k]).max(0.0));
         x * y + y * z + z * x
     }
@@ -67,14 +68,14 @@ impl Item {
 /// A node of the binary tree over the items `first .. first + count`. Its left child follows it; `right` is 0 at leaves.
 #[derive(Clone, Copy)]
 pub struct Branch {
-    pub bounds: Bounds,
     pub first: u32,
     pub count: u32,
     pub right: u32,
+    pub cut: Cut,
 }
 
 impl Branch {
-    pub const EMPTY: Branch = Branch { bounds: Bounds::EMPTY, first: 0, count: 0, right: 0 };
+    pub const EMPTY: Branch = Branch { first: 0, count: 0, right: 0, cut: Cut::LEAF };
 }
 
 /// The exact bounds of all triangles; zeros if there are none.
@@ -118,7 +119,15 @@ pub fn binary_tree(items: &mut [Item], stop: &AtomicBool) -> Vec<Branch> {
     branches
 }
 
-fn split(items: &mut [Item], first: usize, out: &mut [Branch], at: usize, depth: usize, stop: &AtomicBool) {
+/// Builds the tree over `items` into `out`, whose first entry has the index `at`, and returns its costs.
+fn split(
+    items: &mut [Item],
+    first: usize,
+    out: &mut [Branch],
+    at: usize,
+    depth: usize,
+    stop: &AtomicBool,
+) -> Costs {
     let n = items.len();
     let (bounds, centres) = reduce(items, &bounds_of, &|a: (Bounds, Bounds), b: (Bounds, Bounds)| {
         let mut merged = a;
@@ -126,22 +135,22 @@ fn split(items: &mut [Item], first: usize, out: &mut [Branch], at: usize, depth:
         merged.1.grow(&b.1);
         merged
     });
-    out[0] = Branch { bounds, first: first as u32, count: n as u32, right: 0 };
+    let (area, blocks) = (bounds.area(), n.div_ceil(BLOCK) as f32);
+    out[0] = Branch { first: first as u32, count: n as u32, right: 0, cut: Cut::LEAF };
     if n <= 1 || (n > SMALL && stop.load(Ordering::Relaxed)) {
-        return;
+        return Costs::leaf(area * blocks);
     }
-    let blocks = n.div_ceil(BLOCK) as f32;
     // Halving needs this many levels more; keep them in reserve.
     let halving = depth + n.ilog2() as usize + 1 >= MAX_DEPTH;
     let best = if halving { None } else { best_plane(items, &centres) };
     let middle = match best {
         Some(p) => {
-            if n <= BLOCK && p.cost + NODE_COST * bounds.area() >= bounds.area() * blocks {
-                return;
+            if n <= BLOCK && p.cost + NODE_COST * area >= area * blocks {
+                return Costs::leaf(area * blocks);
             }
             partition(items, |item| p.bins.of(item, p.axis) < p.bin)
         }
-        None if n <= BLOCK => return,
+        None if n <= BLOCK => return Costs::leaf(area * blocks),
         None => n / 2,
     };
     let right = 2 * middle;
@@ -150,12 +159,12 @@ fn split(items: &mut [Item], first: usize, out: &mut [Branch], at: usize, depth:
     let (left_out, right_out) = out[1..].split_at_mut(right - 1);
     let mut left = |stop: &AtomicBool| split(a, first, left_out, at + 1, depth + 1, stop);
     let mut rest = |stop: &AtomicBool| split(b, first + middle, right_out, at + right, depth + 1, stop);
-    if n > SMALL {
-        rayon::join(|| left(stop), || rest(stop));
-    } else {
-        left(stop);
-        rest(stop);
-    }
+    let (left, rest) =
+        if n > SMALL { rayon::join(|| left(stop), || rest(stop)) } else { (left(stop), rest(stop)) };
+    let leaf = if n <= BLOCK * Child::MAX_RUN { area * blocks } else { f32::INFINITY };
+    let (costs, cut) = Costs::inner(&left, &rest, NODE_COST * area, leaf);
+    out[0].cut = cut;
+    costs
 }
 
 fn bounds_of(items: &[Item]) -> (Bounds, Bounds) {

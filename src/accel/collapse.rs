@@ -31,8 +31,12 @@ fn emit_node<T: Real>(wide: &mut Wide<T>, source: &Source<T>, branch: usize) -> 
     let me = wide.nodes.len();
     wide.nodes.push(Node::empty());
     let mut all = [[T::INFINITY; 3], [-T::INFINITY; 3]];
-    for (slot, &child) in gather(source.branches, branch).iter().enumerate() {
-        let (reference, corners) = if source.branches[child].right == 0 {
+    let mut front = Front::default();
+    if source.branches[branch].count > 0 {
+        front.node(source.branches, branch);
+    }
+    for (slot, &child) in front.branches[..front.len].iter().enumerate() {
+        let (reference, corners) = if source.branches[child].cut.is_leaf() {
             emit_leaf(wide, source, &source.branches[child])
         } else {
             emit_node(wide, source, child)
@@ -49,23 +53,36 @@ fn emit_node<T: Real>(wide: &mut Wide<T>, source: &Source<T>, branch: usize) -> 
     (Child::node(me), all)
 }
 
-/// Up to eight descendants of a branch that cover it: the largest is opened until they are eight.
-fn gather(branches: &[Branch], branch: usize) -> Vec<usize> {
-    let mut front = Vec::with_capacity(WIDTH);
-    if branches[branch].count > 0 {
-        front.push(branch);
+/// The branches that become a node's children.
+#[derive(Default)]
+struct Front {
+    branches: [usize; WIDTH],
+    len: usize,
+}
+
+impl Front {
+    /// Those below a branch that becomes a node, or itself if it is the root and a leaf.
+    fn node(&mut self, branches: &[Branch], at: usize) {
+        if branches[at].cut.is_leaf() {
+            return self.take(branches, at, 1);
+        }
+        let (left, right) = branches[at].cut.below();
+        self.take(branches, at + 1, left);
+        self.take(branches, branches[at].right as usize, right);
     }
-    while front.len() < WIDTH {
-        let open = |&i: &usize| branches[front[i]].right != 0;
-        let area = |i: usize| branches[front[i]].bounds.area();
-        let Some(i) = (0..front.len()).filter(open).max_by(|&i, &j| area(i).total_cmp(&area(j))) else {
-            break;
-        };
-        let at = front[i];
-        front[i] = at + 1;
-        front.push(branches[at].right as usize);
+    /// A branch in at most `slots` slots.
+    fn take(&mut self, branches: &[Branch], at: usize, slots: usize) {
+        match branches[at].cut.across(slots) {
+            Some((left, right)) => {
+                self.take(branches, at + 1, left);
+                self.take(branches, branches[at].right as usize, right);
+            }
+            None => {
+                self.branches[self.len] = at;
+                self.len += 1;
+            }
+        }
     }
-    front
 }
 
 fn emit_leaf<T: Real>(wide: &mut Wide<T>, source: &Source<T>, leaf: &Branch) -> (Child, Corners<T>) {

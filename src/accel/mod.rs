@@ -2,9 +2,11 @@
 //!
 //! - [`Bvh`]: a tree of boxes; nearest and any hit, singly or in batches
 //! - [`brute_force`]: every triangle, by the same rule: what every structure must return
+//! - [`offset_ray`]: origins moved off their surface, so that rays do not meet it again
 
 mod build;
 mod collapse;
+mod cut;
 mod node;
 mod packet;
 mod ray;
@@ -12,6 +14,7 @@ mod single;
 mod stream;
 
 pub mod brute_force;
+pub mod offset_ray;
 pub(crate) mod query;
 
 use crate::parallel::{self, Interrupted, Watch};
@@ -129,13 +132,13 @@ impl<T: Real> Bvh<T> {
     /// The nearest hits of a batch, which should hold at least some hundred rays.
     #[inline(always)]
     pub fn closest_hits<S: Simd>(&self, s: S, rays: &[Ray<T>], hits: &mut [Hit<T>]) {
-        self.trace_batch::<false, S>(s, rays, |i, hit| hits[i] = hit);
+        self.trace_batch::<false, S>(s, rays.len(), |i| rays[i], |i, hit| hits[i] = hit);
     }
 
     /// Whether each ray of a batch hits anything.
     #[inline(always)]
     pub fn any_hits<S: Simd>(&self, s: S, rays: &[Ray<T>], hits: &mut [bool]) {
-        self.trace_batch::<true, S>(s, rays, |i, hit| hits[i] = hit.is_hit());
+        self.trace_batch::<true, S>(s, rays.len(), |i| rays[i], |i, hit| hits[i] = hit.is_hit());
     }
 
     /// Hands every ray's hit to `answer`, in whatever order: runs of rays that go alike are traced as packets, the
@@ -144,14 +147,18 @@ impl<T: Real> Bvh<T> {
     fn trace_batch<const ANY: bool, S: Simd>(
         &self,
         s: S,
-        rays: &[Ray<T>],
+        count: usize,
+        rays: impl Fn(usize) -> Ray<T>,
         mut answer: impl FnMut(usize, Hit<T>),
     ) {
-        let (runs, rest) = rays.as_chunks::<{ packet::SIZE }>();
         let mut apart: Vec<u32> = Vec::new();
-        for (i, run) in runs.iter().enumerate() {
-            let first = i * packet::SIZE;
-            match packet::gather(s, self, run) {
+        let whole = count - count % packet::SIZE;
+        for first in (0..whole).step_by(packet::SIZE) {
+            let mut run = [Ray::new([T::zero(); 3], [T::zero(); 3]); packet::SIZE];
+            for (l, ray) in run.iter_mut().enumerate() {
+                *ray = rays(first + l);
+            }
+            match packet::gather(s, self, &run) {
                 Some(mut packet) => {
                     packet.trace::<ANY>(s, self);
                     for l in 0..packet::SIZE {
@@ -161,8 +168,8 @@ impl<T: Real> Bvh<T> {
                 None => apart.extend((first..first + packet::SIZE).map(|i| i as u32)),
             }
         }
-        apart.extend((rays.len() - rest.len()..rays.len()).map(|i| i as u32));
-        stream::trace::<ANY, T, S, _>(s, self, rays, &apart, answer);
+        apart.extend((whole..count).map(|i| i as u32));
+        stream::trace::<ANY, T, S, _, _>(s, self, rays, &apart, answer);
     }
 
     /// The exact bounds of all triangles: zeros if there are none.

@@ -166,9 +166,11 @@ impl Stack {
             if below >= e {
                 break;
             }
+            // Sound: as above.
             unsafe { self.entries.get_unchecked_mut(at).write(below) };
             at -= 1;
         }
+        // Sound: as above.
         unsafe { self.entries.get_unchecked_mut(at).write(e) };
     }
 }

@@ -104,10 +104,10 @@ fn gather_group<T: Real, S: Simd>(
         let negative = d[k].less(d[k].num(0.0));
         same = same & if heading.negative[k] == 1 { negative } else { !negative };
     }
-    (T::V8::<S>::bits(same) == 0xff).then(
-        #[inline(always)]
-        || prepare(&tree.bounds, heading, o, d, low, high),
-    )
+    if T::V8::<S>::bits(same) != 0xff {
+        return None;
+    }
+    Some(prepare(&tree.bounds, heading, o, d, low, high))
 }
 
 /// The least and the greatest of sixteen lanes.

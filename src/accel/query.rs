@@ -79,8 +79,8 @@ pub fn closest_hits<T: Real>(
     found: Found<T>,
 ) -> Result<(), Interrupted> {
     parallel::for_each(watch, found, PIECE, |first, mut found| {
-        let piece: Vec<Ray<T>> = (first..first + found.len()).map(|i| rays.get(i)).collect();
-        dispatch!(s => tree.trace_batch::<false, _>(s, &piece, |i, hit| found.put(i, hit)))
+        let count = found.len();
+        dispatch!(s => tree.trace_batch::<false, _>(s, count, |i| rays.get(first + i), |i, hit| found.put(i, hit)))
     })
 }
 
@@ -92,8 +92,8 @@ pub fn any_hits<T: Real>(
     out: &mut [bool],
 ) -> Result<(), Interrupted> {
     parallel::for_each(watch, out, PIECE, |first, out: &mut [bool]| {
-        let piece: Vec<Ray<T>> = (first..first + out.len()).map(|i| rays.get(i)).collect();
-        dispatch!(s => tree.trace_batch::<true, _>(s, &piece, |i, hit| out[i] = hit.is_hit()))
+        let count = out.len();
+        dispatch!(s => tree.trace_batch::<true, _>(s, count, |i| rays.get(first + i), |i, hit| out[i] = hit.is_hit()))
     })
 }
 

@@ -177,8 +177,9 @@ pub fn trace<const ANY: bool, T: Real, S: Simd>(
     hit
 }
 
+/// The next passed child, and where the ray enters it.
 #[inline(always)]
-fn next<T: Real>(bits: &mut u32, node: &Node<T>, entries: &[T; 8]) -> Option<Entry> {
+pub fn next<T: Real>(bits: &mut u32, node: &Node<T>, entries: &[T; 8]) -> Option<Entry> {
     if *bits == 0 {
         return None;
     }

@@ -1,7 +1,7 @@
 //! Many rays that have little in common: sixteen are traced in turns, a node each, and the node that a ray needs next
 //! is fetched while the others work. Memory latency, not arithmetic, is what such rays wait for.
 
-use super::node::{Child, Entry, Stack, key};
+use super::node::{Child, Stack, key};
 use super::ray::{Heading, Ready, ready};
 use super::{Bvh, Hit, Ray, single};
 use crate::real::Real;
@@ -48,11 +48,17 @@ impl<T: Real> Row<T> {
         } else {
             let node = tree.node(self.child);
             let (mut bits, entries) = single::children(s, node, &self.ray, self.heading, self.hit.t);
-            let base = self.stack.len();
-            while bits != 0 {
-                let i = bits.trailing_zeros() as usize & 7;
-                bits &= bits - 1;
-                self.stack.insert(base, Entry::new(entries[i], node.children[i]));
+            if let Some(mut nearest) = single::next(&mut bits, node, &entries) {
+                let base = self.stack.len();
+                while let Some(mut other) = single::next(&mut bits, node, &entries) {
+                    if other < nearest {
+                        std::mem::swap(&mut other, &mut nearest);
+                    }
+                    self.stack.insert(base, other);
+                }
+                self.child = nearest.child();
+                tree.prefetch(self.child);
+                return true;
             }
         }
         let end = key(self.hit.t);
@@ -67,31 +73,39 @@ impl<T: Real> Row<T> {
     }
 }
 
+/// The next of the `chosen` rays that is one, from `next` on; those that are none are answered at once.
+#[inline(always)]
+fn take<T: Real, R: Fn(usize) -> Ray<T>, F: FnMut(usize, Hit<T>)>(
+    tree: &Bvh<T>,
+    rays: &R,
+    chosen: &[u32],
+    next: &mut usize,
+    answer: &mut F,
+) -> Option<(usize, i32, (Ready<T>, Heading))> {
+    while let Some(&index) = chosen.get(*next) {
+        *next += 1;
+        let ray = rays(index as usize);
+        match ready(&tree.bounds, &ray) {
+            Some(made) => return Some((index as usize, ray.ignore_face, made)),
+            None => answer(index as usize, Hit::no_ray()),
+        }
+    }
+    None
+}
+
 /// Traces the `chosen` rays and hands each answer, with its ray's index, to `answer`.
 #[inline(always)]
-pub fn trace<const ANY: bool, T: Real, S: Simd, F: FnMut(usize, Hit<T>)>(
+pub fn trace<const ANY: bool, T: Real, S: Simd, R: Fn(usize) -> Ray<T>, F: FnMut(usize, Hit<T>)>(
     s: S,
     tree: &Bvh<T>,
-    rays: &[Ray<T>],
+    rays: R,
     chosen: &[u32],
     mut answer: F,
 ) {
     let mut next = 0;
-    // The next proper ray; rays that are none are answered at once.
-    let mut take = |answer: &mut F| {
-        while next < chosen.len() {
-            let index = chosen[next] as usize;
-            next += 1;
-            match ready(&tree.bounds, &rays[index]) {
-                Some(made) => return Some((index, rays[index].ignore_face, made)),
-                None => answer(index, Hit::no_ray()),
-            }
-        }
-        None
-    };
-    let mut rows: Vec<Row<T>> = Vec::with_capacity(ROWS);
+    let mut rows: Vec<Row<T>> = Vec::with_capacity(ROWS.min(chosen.len()));
     while rows.len() < ROWS
-        && let Some((index, ignore, made)) = take(&mut answer)
+        && let Some((index, ignore, made)) = take(tree, &rays, chosen, &mut next, &mut answer)
     {
         rows.push(Row::new(index, ignore, made));
     }
@@ -104,7 +118,7 @@ pub fn trace<const ANY: bool, T: Real, S: Simd, F: FnMut(usize, Hit<T>)>(
                 continue;
             }
             answer(row.index, row.ray.finish(row.hit));
-            match take(&mut answer) {
+            match take(tree, &rays, chosen, &mut next, &mut answer) {
                 Some((index, ignore, made)) => row.restart(index, ignore, made),
                 None => {
                     rows.swap_remove(i);

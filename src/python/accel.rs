@@ -195,4 +195,23 @@ pub mod accel {
             run(py, None, |watch| kernels::query::normals(watch, p, f, hit, out))
         })
     }
+
+    #[pyfunction]
+    fn offset_ray(
+        py: Python<'_>,
+        points: &Bound<'_, PyAny>,
+        normals: &Bound<'_, PyAny>,
+        directions: Option<&Bound<'_, PyAny>>,
+        extents: &Bound<'_, PyAny>,
+        out: &Bound<'_, PyAny>,
+    ) -> PyResult<()> {
+        real!(points, T => {
+            let (p, n) = (In::<T>::of("points", points)?, In::<T>::of("normals", normals)?);
+            let d = directions.map(|d| In::<T>::of("directions", d)).transpose()?;
+            let (e, mut out) = (In::<T>::of("extent", extents)?, Out::<T>::of("out", out)?);
+            let (p, n, e, out) = (p.items()?, n.items()?, e.slice()?, out.items()?);
+            let d = d.as_ref().map(|d| d.items()).transpose()?;
+            run(py, None, |watch| kernels::offset_ray::offset_ray_many(watch, p, n, d, e, out))
+        })
+    }
 }
