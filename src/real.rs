@@ -82,6 +82,8 @@ pub trait Real:
 
     fn of(x: f64) -> Self;
     fn to_f64(self) -> f64;
+    /// The low bits of the representation: after adding [`Real::ROUND_MAGIC`], the nearest integer.
+    fn low_bits(self) -> i32;
     fn floor(self) -> Self;
     /// Lanes that hold integers in [0, 2^22], as integers.
     fn indices<S: Simd>(v: Self::V8<S>) -> [u32; 8];
@@ -184,6 +186,10 @@ macro_rules! scalar {
             #[inline(always)]
             fn to_f64(self) -> f64 {
                 self as f64
+            }
+            #[inline(always)]
+            fn low_bits(self) -> i32 {
+                self.to_bits() as i32
             }
             #[inline(always)]
             fn floor(self) -> $t {

@@ -5,8 +5,10 @@ use pyo3::prelude::*;
 pub mod raster {
     use crate::parallel::{self, Interrupted, Watch};
     use crate::python::array::{In, Out, run};
-    use crate::raster::{self as kernels, Cull, Depth, Options, Visibility};
+    use crate::raster::{self as kernels, Cull, Depth, Options, Shading, Visibility};
     use crate::real;
+    use crate::real::Real;
+    use crate::vec::Mat4;
     use pyo3::exceptions::PyValueError;
     use pyo3::prelude::*;
     use std::sync::atomic::{AtomicUsize, Ordering};
@@ -99,6 +101,53 @@ pub mod raster {
             let (clip, faces, out) = (clip.items()?, faces.items()?, out.slice()?);
             check_indices(py, faces, clip.len())?;
             run(py, None, |watch| kernels::rasterize_depth(watch, clip, faces, &options, out))
+        })
+    }
+
+    #[pyfunction]
+    fn render_lambert(
+        py: Python<'_>,
+        positions: &Bound<'_, PyAny>,
+        normals: &Bound<'_, PyAny>,
+        faces: &Bound<'_, PyAny>,
+        matrix: &Bound<'_, PyAny>,
+        size: (usize, usize),
+        samples: usize,
+        cull: &str,
+        depth: &str,
+        shading: ([f64; 3], [f64; 3], [f64; 3], bool),
+        out: &Bound<'_, PyAny>,
+    ) -> PyResult<()> {
+        let options = options(size, samples, cull, depth)?;
+        let faces = In::<i32>::of("faces", faces)?;
+        let bytes = Out::<u8>::of("out", out);
+        real!(positions, T => {
+            let (positions, normals) =
+                (In::<T>::of("positions", positions)?, In::<T>::of("normals", normals)?);
+            let matrix = In::<T>::of("matrix", matrix)?;
+            let (positions, normals, faces) = (positions.items()?, normals.items()?, faces.items()?);
+            let rows: &[[T; 4]] = matrix.items()?;
+            let matrix = Mat4::from_rows([rows[0], rows[1], rows[2], rows[3]]);
+            check_indices(py, faces, positions.len())?;
+            let (to_light, color, background, two_sided) = shading;
+            let [to_light, color, background] =
+                [to_light, color, background].map(|v| v.map(<T as Real>::of));
+            let shading = Shading { to_light, color, background, two_sided };
+            match bytes {
+                Ok(mut bytes) => {
+                    let out = bytes.items::<4>()?;
+                    run(py, None, |watch| {
+                        kernels::render_lambert(watch, positions, normals, faces, matrix, &options, &shading, out)
+                    })
+                }
+                Err(_) => {
+                    let mut out = Out::<T>::of("out", out)?;
+                    let out = out.items::<3>()?;
+                    run(py, None, |watch| {
+                        kernels::render_lambert(watch, positions, normals, faces, matrix, &options, &shading, out)
+                    })
+                }
+            }
         })
     }
 }

@@ -101,11 +101,13 @@ impl Grid {
     /// The bounds of a triangle in pixels that hold samples.
     #[inline(always)]
     pub fn bounds(&self, v: &[[i32; 2]; 3]) -> [[i32; 2]; 2] {
-        std::array::from_fn(|axis| {
+        let mut bounds = [[0; 2]; 2];
+        for axis in 0..2 {
             let low = v[0][axis].min(v[1][axis]).min(v[2][axis]);
             let high = v[0][axis].max(v[1][axis]).max(v[2][axis]);
-            self.pixels(low, high, axis)
-        })
+            bounds[axis] = self.pixels(low, high, axis);
+        }
+        bounds
     }
 
     #[inline(always)]
@@ -177,7 +179,7 @@ pub fn bin<T: Real>(
     bins: &mut Bins,
 ) {
     for (i, face) in faces.iter().enumerate() {
-        let v = face.map(|k| snapped[k as usize]);
+        let v = [snapped[face[0] as usize], snapped[face[1] as usize], snapped[face[2] as usize]];
         if (v[0][0] == OUTSIDE) | (v[1][0] == OUTSIDE) | (v[2][0] == OUTSIDE) {
             let triangle = face.map(|k| clip[k as usize].map(|c| c.to_f64()));
             bin_clipped(screen, grid, triangle, (first + i) as u32, bins);

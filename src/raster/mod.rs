@@ -5,12 +5,14 @@
 //! visible triangles of a tile into whatever picture is wanted. Nothing depends on the number of threads.
 //!
 //! - [`rasterize`](mod@rasterize): face, barycentrics and depth as pictures; depth alone
+//! - [`render_lambert`](mod@render_lambert): a picture of a matte mesh in one pass
 //!
 //! The parts: `samples` (where the samples of a pixel lie), `clip` (polygons against near, far and guard planes), `setup`
 //! (snapping, edge functions, planes of depth and barycentrics), `bin` (triangles to tiles), `tile` (exact coverage
 //! and depth), `picture` (what tiles write into), `pipeline` (the stages in order).
 
 pub mod rasterize;
+pub mod render_lambert;
 
 pub(crate) mod bin;
 pub(crate) mod clip;
@@ -22,6 +24,7 @@ pub(crate) mod tile;
 
 pub use pipeline::Options;
 pub use rasterize::{Visibility, rasterize, rasterize_depth};
+pub use render_lambert::{Shading, render_lambert};
 
 /// The largest width and height: with the guard band, edge functions over a tile then fit 32 bits.
 pub const MAX_SIZE: usize = 16384;

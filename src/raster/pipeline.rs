@@ -86,6 +86,6 @@ fn draw_tile<T: Real>(tile: &mut Tile<T>, index: usize, scene: &Scene<T>, resolv
 #[inline(always)]
 fn snap<T: Real>(screen: &Screen, clip: &[[T; 4]], snapped: &mut [[i32; 2]]) {
     for (v, out) in clip.iter().zip(snapped) {
-        *out = screen.snap_or_mark(v.map(|c| c.to_f64()));
+        *out = screen.snap_or_mark([v[0].to_f64(), v[1].to_f64(), v[2].to_f64(), v[3].to_f64()]);
     }
 }

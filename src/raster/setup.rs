@@ -77,8 +77,9 @@ fn nearest(x: f64) -> i32 {
 /// Twice the signed area in subpixels squared, positive where the vertices run clockwise on the screen (y down).
 #[inline(always)]
 pub fn area(v: &[[i32; 2]; 3]) -> i64 {
-    let d = |i: usize, axis: usize| (v[i][axis] - v[0][axis]) as i64;
-    d(1, 0) * d(2, 1) - d(2, 0) * d(1, 1)
+    let (x1, y1) = ((v[1][0] - v[0][0]) as i64, (v[1][1] - v[0][1]) as i64);
+    let (x2, y2) = ((v[2][0] - v[0][0]) as i64, (v[2][1] - v[0][1]) as i64);
+    x1 * y2 - x2 * y1
 }
 
 /// The three edge functions `a x + b y + c` in subpixels; a point is covered where none is negative.
@@ -155,10 +156,18 @@ impl<T: Real> Planes<T> {
     /// Weights up to their sum, which is positive.
     #[inline(always)]
     pub fn clamped_weights_at(&self, dx: T, dy: T) -> [T; 3] {
-        let [l0, l1, l2] = self.weights.map(|p| Lanes::max(at(&p, dx, dy), T::zero()));
-        // A sliver thinner than the grid may miss the sample by all three: then its first vertex stands for it.
-        [Lanes::max(l0, T::MIN_POSITIVE), l1, l2]
+        clamped(&self.weights, dx, dy)
     }
+}
+
+/// The weights at a point, none negative and their sum positive.
+#[inline(always)]
+pub fn clamped<T: Real>(weights: &[Plane<T>; 3], dx: T, dy: T) -> [T; 3] {
+    let l0 = Lanes::max(at(&weights[0], dx, dy), T::zero());
+    let l1 = Lanes::max(at(&weights[1], dx, dy), T::zero());
+    let l2 = Lanes::max(at(&weights[2], dx, dy), T::zero());
+    // A sliver thinner than the grid may miss the sample by all three: then its first vertex stands for it.
+    [Lanes::max(l0, T::MIN_POSITIVE), l1, l2]
 }
 
 /// The planes of a triangle in clip space about the pixel `reference`.
@@ -166,20 +175,21 @@ impl<T: Real> Planes<T> {
 pub fn planes<T: Real>(face: i32, clip: [[T; 4]; 3], reference: [i32; 2], screen: &Screen) -> Planes<T> {
     // A common factor changes neither depth nor weights, and keeps the products in range.
     let mut largest = T::zero();
-    for v in clip {
-        for c in v {
-            largest = Lanes::max(largest, Lanes::abs(c));
+    for i in 0..3 {
+        for k in 0..4 {
+            largest = Lanes::max(largest, Lanes::abs(clip[i][k]));
         }
     }
     let factor = T::one() / largest;
     // Homogeneous pixel coordinates about the reference: small numbers near the triangle, so little cancels.
-    let [hx, hy] = screen.half.map(T::of);
+    let (hx, hy) = (T::of(screen.half[0]), T::of(screen.half[1]));
     let (rx, ry) = (T::of(reference[0] as f64), T::of(reference[1] as f64));
     let (kx, ky) = (hx - rx, hy - ry);
-    let v = clip.map(|v| {
-        let [x, y, z, w] = v.map(|c| c * factor);
-        [x * hx + w * kx, w * ky - y * hy, z, w]
-    });
+    let mut v = clip;
+    for i in 0..3 {
+        let (x, y, w) = (clip[i][0] * factor, clip[i][1] * factor, clip[i][3] * factor);
+        v[i] = [x * hx + w * kx, w * ky - y * hy, clip[i][2] * factor, w];
+    }
     let mut weights = [[T::zero(); 3]; 3];
     let mut determinant = T::zero();
     for i in 0..3 {
@@ -189,17 +199,17 @@ pub fn planes<T: Real>(face: i32, clip: [[T; 4]; 3], reference: [i32; 2], screen
     }
     // The depth of the vertex farthest from the eye's plane anchors the depth plane: only differences to it are
     // interpolated, so a triangle of constant depth keeps it to the bit.
-    let mut anchor = v[0];
-    let ratio = |v: [T; 4]| v[2] / v[3];
-    let (mut low, mut high) = (T::INFINITY, -T::INFINITY);
-    let mut behind = false;
-    for v in v {
-        anchor = if v[3] > anchor[3] { v } else { anchor };
-        (low, high) = (Lanes::min(low, ratio(v)), Lanes::max(high, ratio(v)));
-        behind |= v[3] <= T::zero();
+    let mut farthest = v[0][3];
+    let mut anchor = v[0][2] / v[0][3];
+    let (mut low, mut high, mut behind) = (anchor, anchor, v[0][3] <= T::zero());
+    for i in 1..3 {
+        let ratio = v[i][2] / v[i][3];
+        anchor = T::select(v[i][3] > farthest, ratio, anchor);
+        farthest = Lanes::max(farthest, v[i][3]);
+        (low, high) = (Lanes::min(low, ratio), Lanes::max(high, ratio));
+        behind |= v[i][3] <= T::zero();
     }
     let sign = if screen.reversed { -T::one() } else { T::one() };
-    let anchor = ratio(anchor);
     let inverse = sign / determinant;
     let mut depth = [T::zero(), T::zero(), sign * anchor];
     for i in 0..3 {
@@ -215,11 +225,13 @@ pub fn planes<T: Real>(face: i32, clip: [[T; 4]; 3], reference: [i32; 2], screen
     let flip = if determinant < T::zero() { -T::one() } else { T::one() };
     // No determinant, no planes: the triangle is edge-on to within rounding, and its anchor stands for it.
     let sound = (Lanes::abs(determinant) > T::zero()) & Lanes::abs(inverse).is_finite();
-    if sound {
-        weights = weights.map(|p| p.map(|c| c * flip));
-    } else {
-        weights = [[T::zero(), T::zero(), T::one()]; 3];
-        depth = [T::zero(), T::zero(), sign * anchor];
+    for i in 0..3 {
+        for k in 0..3 {
+            let fallback = if k == 2 { T::one() } else { T::zero() };
+            weights[i][k] = T::select(sound, weights[i][k] * flip, fallback);
+        }
+        let fallback = if i == 2 { sign * anchor } else { T::zero() };
+        depth[i] = T::select(sound, depth[i], fallback);
     }
     Planes { face, reference: [rx, ry], weights, depth, depth_range }
 }

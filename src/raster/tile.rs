@@ -15,7 +15,7 @@ pub const TILE_BITS: u32 = 6;
 /// Pixels along a tile's side.
 pub const TILE: usize = 1 << TILE_BITS;
 /// Pixels that are tested at once.
-const LANES: usize = 8;
+pub const LANES: usize = 8;
 /// Rows are padded, so that lanes may run over the right border.
 pub const PITCH: usize = TILE + LANES;
 
@@ -72,7 +72,8 @@ impl<T: Real> Tile<T> {
     /// Where a sample lies in its pixel.
     #[inline(always)]
     pub fn offset(&self, sample: usize) -> [T; 2] {
-        self.samples[sample].map(|s| T::of(s as f64 / SUBPIXELS as f64))
+        let [x, y] = self.samples[sample];
+        [T::of(x as f64 / SUBPIXELS as f64), T::of(y as f64 / SUBPIXELS as f64)]
     }
 
     /// Triangle of each pixel in a row of one sample: indices into `visible`, or [`NONE`].
@@ -105,10 +106,12 @@ impl<T: Real> Tile<T> {
             for &entry in bins.entries(index) {
                 if entry & PIECE == 0 {
                     let face = scene.faces[entry as usize];
-                    let vertices = face.map(|k| scene.snapped[k as usize]);
+                    let [i, j, k] = [face[0] as usize, face[1] as usize, face[2] as usize];
+                    let vertices = [scene.snapped[i], scene.snapped[j], scene.snapped[k]];
                     self.draw_triangle(scene, &vertices, || {
-                        let clip = face.map(|k| scene.clip[k as usize]);
-                        let reference = vertices[farthest(&clip)].map(|c| c >> SUBPIXEL_BITS);
+                        let clip = [scene.clip[i], scene.clip[j], scene.clip[k]];
+                        let [x, y] = vertices[farthest(&clip)];
+                        let reference = [x >> SUBPIXEL_BITS, y >> SUBPIXEL_BITS];
                         planes(entry as i32, clip, reference, scene.screen)
                     });
                 } else {
@@ -146,22 +149,29 @@ impl<T: Real> Tile<T> {
         }
         let id = self.visible.len() as u32;
         for sample in 0..self.samples.len() {
-            let [sx, sy] = self.samples[sample].map(|s| s as i64);
-            let at_corner: [i32; 3] = std::array::from_fn(|i| {
-                let c = edges.c[i] + edges.a[i] as i64 * sx + edges.b[i] as i64 * sy;
-                (c >> SUBPIXEL_BITS) as i32
-            });
+            let [sx, sy] = self.samples[sample];
+            let mut corner = [0i32; 3];
+            let mut steps = [[0i32; LANES]; 3];
+            for i in 0..3 {
+                let c = edges.c[i] + edges.a[i] as i64 * sx as i64 + edges.b[i] as i64 * sy as i64;
+                corner[i] = (c >> SUBPIXEL_BITS) as i32;
+                for l in 0..LANES {
+                    steps[i][l] = edges.a[i] * l as i32;
+                }
+            }
             for y in y0..=y1 {
-                let row: [i32; 3] = std::array::from_fn(|i| at_corner[i] + edges.b[i] * y);
                 let mut x = x0;
                 while x <= x1 {
-                    let e: [i32; 3] = std::array::from_fn(|i| row[i] + edges.a[i] * x);
-                    let inside = covered(e, edges.a);
-                    if inside.iter().fold(false, |any, &lane| any | lane) {
+                    let mut e = [0i32; 3];
+                    for i in 0..3 {
+                        e[i] = corner[i] + edges.b[i] * y + edges.a[i] * x;
+                    }
+                    let outside = outside(e, &steps);
+                    if outside.iter().fold(-1, |all, &lane| all & lane) >= 0 {
                         if self.visible.len() as u32 == id {
                             self.visible.push(planes());
                         }
-                        self.test(id, inside, sample, x as usize, y as usize);
+                        self.test(id, &outside, sample, x as usize, y as usize);
                     }
                     x += LANES as i32;
                 }
@@ -169,11 +179,11 @@ impl<T: Real> Tile<T> {
         }
     }
 
-    /// Depth test of eight pixels of triangle `id`, of which those `inside` are covered.
+    /// Depth test of eight pixels of triangle `id`, of which those with a negative mark are outside.
     #[inline(always)]
-    fn test(&mut self, id: u32, inside: [bool; LANES], sample: usize, x: usize, y: usize) {
+    fn test(&mut self, id: u32, outside: &[i32; LANES], sample: usize, x: usize, y: usize) {
         let [ox, oy] = self.offset(sample);
-        let p = &self.visible[id as usize];
+        let p = self.visible[id as usize];
         // Pixels and offsets are small multiples of 1/16: these differences are exact.
         let dx = T::of((self.x + x) as f64) + ox - p.reference[0];
         let dy = T::of((self.y + y) as f64) + oy - p.reference[1];
@@ -182,7 +192,7 @@ impl<T: Real> Tile<T> {
         let ids: &mut [u32; LANES] = (&mut self.ids[at..at + LANES]).try_into().expect("eight lanes");
         for l in 0..LANES {
             let z = p.depth_at(dx + T::of(l as f64), dy);
-            let nearer = inside[l] & (z < depth[l]);
+            let nearer = (outside[l] >= 0) & (z < depth[l]);
             depth[l] = T::select(nearer, z, depth[l]);
             ids[l] = if nearer { id } else { ids[l] };
         }
@@ -200,15 +210,31 @@ fn farthest<T: Real>(clip: &[[T; 4]; 3]) -> usize {
 #[inline(always)]
 fn large(v: &[[i32; 2]; 3]) -> bool {
     let limit = (TILE as u32) << SUBPIXEL_BITS;
-    let far = |a: [i32; 2], b: [i32; 2]| a[0].abs_diff(b[0]).max(a[1].abs_diff(b[1])) >= limit;
-    far(v[0], v[1]) | far(v[1], v[2]) | far(v[2], v[0])
+    let mut span = 0;
+    for axis in 0..2 {
+        let low = v[0][axis].min(v[1][axis]).min(v[2][axis]);
+        let high = v[0][axis].max(v[1][axis]).max(v[2][axis]);
+        span = low.abs_diff(high).max(span);
+    }
+    span >= limit
 }
 
-/// Which of eight pixels no edge function `e + a l` excludes.
+/// Negative at those of eight pixels that an edge function `e + step` excludes.
 #[inline(always)]
-fn covered(e: [i32; 3], a: [i32; 3]) -> [bool; LANES] {
-    std::array::from_fn(|l| {
-        let l = l as i32;
-        ((e[0] + a[0] * l) | (e[1] + a[1] * l) | (e[2] + a[2] * l)) >= 0
-    })
+fn outside(e: [i32; 3], steps: &[[i32; LANES]; 3]) -> [i32; LANES] {
+    let mut out = [0; LANES];
+    for l in 0..LANES {
+        out[l] = (e[0] + steps[0][l]) | (e[1] + steps[1][l]) | (e[2] + steps[2][l]);
+    }
+    out
+}
+
+/// The end of the stretch of equal triangles that starts at `start`.
+#[inline(always)]
+pub fn run_end(ids: &[u32], start: usize) -> usize {
+    let mut end = start + 1;
+    while end < ids.len() && ids[end] == ids[start] {
+        end += 1;
+    }
+    end
 }
