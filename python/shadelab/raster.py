@@ -265,8 +265,8 @@ def render_lambert(
     Notes
     -----
     The same pixels as `rasterize`, `interpolate` and the shading in NumPy, up to rounding, at a fraction of the cost:
-    face, barycentrics and normals never leave the cache, and memory carries the picture alone, 12 (24) bytes a pixel, or
-    4 as rgba8. A vanishing normal gives black.
+    face, barycentrics and normals never leave the cache, and memory carries the picture alone, 12 (24) bytes a pixel,
+    or 4 as rgba8. A vanishing normal gives black.
 
     References
     ----------

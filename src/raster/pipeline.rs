@@ -8,6 +8,7 @@ use super::{Cull, Depth, MAX_SIZE};
 use crate::dispatch;
 use crate::parallel::{self, Interrupted, Watch};
 use crate::real::Real;
+use crate::simd::Simd;
 use std::sync::{Mutex, PoisonError};
 
 /// The picture and how triangles cover it.
@@ -23,7 +24,7 @@ pub struct Options {
 
 /// What becomes of a tile once its visible triangles are known. Runs inside the SIMD dispatch of its task.
 pub trait Resolve<T: Real>: Sync {
-    fn resolve(&self, tile: &Tile<T>, scene: &Scene<T>);
+    fn resolve<S: Simd>(&self, s: S, tile: &Tile<T>, scene: &Scene<T>);
 }
 
 /// Vertices of one task of the first stage.
@@ -72,15 +73,21 @@ pub fn draw<T: Real>(
     parallel::run(watch, grid.tiles(), |index| {
         let taken = idle.lock().unwrap_or_else(PoisonError::into_inner).pop();
         let mut tile = taken.unwrap_or_else(|| Tile::new(samples));
-        dispatch!(_s => draw_tile(&mut tile, index, &scene, resolve));
+        dispatch!(s => draw_tile(s, &mut tile, index, &scene, resolve));
         idle.lock().unwrap_or_else(PoisonError::into_inner).push(tile);
     })
 }
 
 #[inline(always)]
-fn draw_tile<T: Real>(tile: &mut Tile<T>, index: usize, scene: &Scene<T>, resolve: &impl Resolve<T>) {
-    tile.draw(index, scene);
-    resolve.resolve(tile, scene);
+fn draw_tile<S: Simd, T: Real>(
+    s: S,
+    tile: &mut Tile<T>,
+    index: usize,
+    scene: &Scene<T>,
+    resolve: &impl Resolve<T>,
+) {
+    tile.draw(s, index, scene);
+    resolve.resolve(s, tile, scene);
 }
 
 #[inline(always)]

@@ -5,6 +5,7 @@ use super::pipeline::{Options, Resolve, draw};
 use super::tile::{NONE, Scene, Tile};
 use crate::parallel::{Interrupted, Watch};
 use crate::real::Real;
+use crate::simd::Simd;
 
 /// Pictures of `height · width · samples` items each. A miss has face -1, zero coordinates and infinite depth.
 pub struct Visibility<'a, T> {
@@ -51,7 +52,7 @@ struct DepthOnly<'a, T> {
 
 impl<T: Real> Resolve<T> for DepthOnly<'_, T> {
     #[inline(always)]
-    fn resolve(&self, tile: &Tile<T>, scene: &Scene<T>) {
+    fn resolve<S: Simd>(&self, _: S, tile: &Tile<T>, scene: &Scene<T>) {
         let n = tile.samples();
         let sign = if scene.screen.reversed { -T::one() } else { T::one() };
         for y in 0..tile.height {
@@ -75,8 +76,8 @@ struct All<'a, T> {
 
 impl<T: Real> Resolve<T> for All<'_, T> {
     #[inline(always)]
-    fn resolve(&self, tile: &Tile<T>, scene: &Scene<T>) {
-        self.depth.resolve(tile, scene);
+    fn resolve<S: Simd>(&self, s: S, tile: &Tile<T>, scene: &Scene<T>) {
+        self.depth.resolve(s, tile, scene);
         let n = tile.samples();
         for y in 0..tile.height {
             let (at, row, width) = (tile.x * n, tile.y + y, tile.width * n);
@@ -86,13 +87,13 @@ impl<T: Real> Resolve<T> for All<'_, T> {
             };
             for sample in 0..n {
                 let [ox, oy] = tile.offset(sample);
-                let sy = T::of(row as f64) + oy;
+                let sy = T::of(row as i32 as f64) + oy;
                 for (x, &id) in tile.ids(sample, y).iter().enumerate() {
                     let i = x * n + sample;
                     (face[i], u[i], v[i]) = (-1, T::zero(), T::zero());
                     if id != NONE {
                         let p = &tile.visible[id as usize];
-                        let dx = T::of((tile.x + x) as f64) + ox - p.reference[0];
+                        let dx = T::of((tile.x + x) as i32 as f64) + ox - p.reference[0];
                         let [pu, pv] = p.barycentrics_at(dx, sy - p.reference[1]);
                         (face[i], u[i], v[i]) = (p.face, pu, pv);
                     }

@@ -8,10 +8,11 @@
 use super::picture::Picture;
 use super::pipeline::{Options, Resolve, draw};
 use super::setup::clamped;
-use super::tile::{LANES, PITCH, Scene, Tile, run_end};
+use super::tile::{LANES, PITCH, Scene, Tile, columns, run_end};
 use crate::dispatch;
 use crate::parallel::{self, Interrupted, Watch};
 use crate::real::{Lanes, Real};
+use crate::simd::*;
 use crate::vec::{Mat4, Vec3};
 
 /// What a pixel is made of.
@@ -96,27 +97,25 @@ impl<T: Real, P: Pixel<T>> Lambert<'_, T, P> {
         self.normals[vertex as usize].into()
     }
 
-    /// The cosine at eight pixels of one triangle, from `dx`; zero where the normal vanishes.
+    /// The cosine at pixels of one triangle; zero where the normal vanishes.
     #[inline(always)]
-    fn cosines(&self, weights: &[[T; 3]; 3], n: &[Vec3<T>; 3], dx: T, dy: T) -> [T; LANES] {
-        let light = Vec3::from(self.shading.to_light);
-        let mut out = [T::zero(); LANES];
-        for l in 0..LANES {
-            let [w0, w1, w2] = clamped(weights, dx + T::of(l as f64), dy);
-            let normal = (n[0] * w0 + n[1] * w1) + n[2] * w2;
-            let cosine = normal.dot(light);
-            let cosine = if self.shading.two_sided { cosine.abs() } else { Lanes::max(cosine, T::zero()) };
-            // Weights are known up to a factor, which the length takes away.
-            let length = normal.length_squared().sqrt();
-            out[l] = cosine / Lanes::max(length, T::MIN_POSITIVE);
-        }
-        out
+    fn cosines<V: Lanes<Elem = T>>(&self, weights: &[[T; 3]; 3], n: &[Vec3<T>; 3], dx: V, dy: T) -> V {
+        let [w0, w1, w2] = clamped(weights, dx, dy);
+        let in_lanes = |v: Vec3<T>| v.map(|c| dx.like(c));
+        let normal = (in_lanes(n[0]) * w0 + in_lanes(n[1]) * w1) + in_lanes(n[2]) * w2;
+        let cosine = normal.dot(in_lanes(self.shading.to_light.into()));
+        let cosine = if self.shading.two_sided { cosine.abs() } else { cosine.max(dx.num(0.0)) };
+        // Weights are known up to a factor, which the length takes away.
+        let length = normal.length_squared().sqrt();
+        cosine / length.max(dx.like(T::MIN_POSITIVE))
     }
 }
 
 impl<T: Real, P: Pixel<T>> Resolve<T> for Lambert<'_, T, P> {
     #[inline(always)]
-    fn resolve(&self, tile: &Tile<T>, scene: &Scene<T>) {
+    fn resolve<S: Simd>(&self, s: S, tile: &Tile<T>, scene: &Scene<T>) {
+        let columns = columns::<T, S>(s);
+        let (zero, one) = (T::V8::splat(s, T::zero()), T::V8::splat(s, T::one()));
         let Shading { color, background, .. } = self.shading;
         let share = T::one() / T::of(tile.samples() as f64);
         for y in 0..tile.height {
@@ -133,15 +132,17 @@ impl<T: Real, P: Pixel<T>> Resolve<T> for Lambert<'_, T, P> {
                     let Some(p) = tile.visible.get(ids[start] as usize) else { continue };
                     let [i, j, k] = scene.faces[p.face as usize];
                     let n = [self.normal(i), self.normal(j), self.normal(k)];
-                    let dy = T::of((tile.y + y) as f64) + oy - p.reference[1];
+                    let dy = T::of((tile.y + y) as i32 as f64) + oy - p.reference[1];
                     for x in (start..end).step_by(LANES) {
-                        let dx = T::of((tile.x + x) as f64) + ox - p.reference[0];
-                        let cosines = self.cosines(&p.weights, &n, dx, dy);
-                        for l in 0..LANES {
-                            let inside = x + l < end;
-                            sum[x + l] += T::select(inside, cosines[l], T::zero());
-                            covered[x + l] += T::select(inside, T::one(), T::zero());
-                        }
+                        let dx = T::of((tile.x + x) as i32 as f64) + ox - p.reference[0];
+                        let cosines = self.cosines(&p.weights, &n, columns + dx, dy);
+                        // Lanes beyond the stretch belong to others.
+                        let inside = columns.simd_lt(T::of((end - x) as i32 as f64));
+                        let add = |to: &mut [T], v: T::V8<S>| {
+                            (T::V8::from_slice(s, to) + inside.select(v, zero)).store_slice(to);
+                        };
+                        add(&mut sum[x..x + LANES], cosines);
+                        add(&mut covered[x..x + LANES], one);
                     }
                 }
             }

@@ -116,13 +116,8 @@ impl Edges {
     }
 }
 
-/// A function affine over the screen: `(c + b dy) + a dx`, in that order.
+/// A function affine over the screen: `a dx + (c + b dy)`, in that order.
 pub type Plane<T> = [T; 3];
-
-#[inline(always)]
-pub fn at<T: Real>(p: &Plane<T>, dx: T, dy: T) -> T {
-    (p[2] + p[1] * dy) + p[0] * dx
-}
 
 /// Depth and barycentrics of one triangle over the screen, about a reference pixel of its own.
 #[derive(Clone, Copy, Debug)]
@@ -139,101 +134,104 @@ pub struct Planes<T> {
 }
 
 impl<T: Real> Planes<T> {
-    /// Depth (less is nearer) at a point given relative to the reference.
-    #[inline(always)]
-    pub fn depth_at(&self, dx: T, dy: T) -> T {
-        Lanes::min(Lanes::max(at(&self.depth, dx, dy), self.depth_range[0]), self.depth_range[1])
-    }
-
     /// The perspective-correct `(u, v)`, within the triangle.
     #[inline(always)]
     pub fn barycentrics_at(&self, dx: T, dy: T) -> [T; 2] {
-        let [l0, l1, l2] = self.clamped_weights_at(dx, dy);
+        let [l0, l1, l2] = clamped(&self.weights, dx, dy);
         let r = T::one() / (l0 + l1 + l2);
         [l1 * r, l2 * r]
     }
-
-    /// Weights up to their sum, which is positive.
-    #[inline(always)]
-    pub fn clamped_weights_at(&self, dx: T, dy: T) -> [T; 3] {
-        clamped(&self.weights, dx, dy)
-    }
 }
 
-/// The weights at a point, none negative and their sum positive.
+/// The weights at points of a row, none negative and their sum positive.
 #[inline(always)]
-pub fn clamped<T: Real>(weights: &[Plane<T>; 3], dx: T, dy: T) -> [T; 3] {
-    let l0 = Lanes::max(at(&weights[0], dx, dy), T::zero());
-    let l1 = Lanes::max(at(&weights[1], dx, dy), T::zero());
-    let l2 = Lanes::max(at(&weights[2], dx, dy), T::zero());
+pub fn clamped<V: Lanes>(weights: &[Plane<V::Elem>; 3], dx: V, dy: V::Elem) -> [V; 3] {
+    let weight = |i: usize| {
+        let p = weights[i];
+        (dx * dx.like(p[0]) + dx.like(p[2] + p[1] * dy)).max(dx.num(0.0))
+    };
+    let (l0, l1, l2) = (weight(0), weight(1), weight(2));
     // A sliver thinner than the grid may miss the sample by all three: then its first vertex stands for it.
-    [Lanes::max(l0, T::MIN_POSITIVE), l1, l2]
+    let missed = (l0 + l1 + l2).less_eq(dx.num(0.0));
+    [V::select(missed, dx.num(1.0), l0), l1, l2]
 }
 
 /// The planes of a triangle in clip space about the pixel `reference`.
 #[inline(always)]
 pub fn planes<T: Real>(face: i32, clip: [[T; 4]; 3], reference: [i32; 2], screen: &Screen) -> Planes<T> {
+    let reference = [T::of(reference[0] as f64), T::of(reference[1] as f64)];
+    let (weights, depth, depth_range) = planes_in_lanes(clip, reference, screen);
+    Planes { face, reference, weights, depth, depth_range }
+}
+
+/// Weights, depth and range of depth of one triangle a lane.
+#[inline(always)]
+pub fn planes_in_lanes<V: Lanes>(
+    clip: [[V; 4]; 3],
+    reference: [V; 2],
+    screen: &Screen,
+) -> ([[V; 3]; 3], [V; 3], [V; 2]) {
+    let like = clip[0][0];
+    let (zero, one) = (like.num(0.0), like.num(1.0));
     // A common factor changes neither depth nor weights, and keeps the products in range.
-    let mut largest = T::zero();
+    let mut largest = zero;
     for i in 0..3 {
         for k in 0..4 {
-            largest = Lanes::max(largest, Lanes::abs(clip[i][k]));
+            largest = largest.max(clip[i][k].abs());
         }
     }
-    let factor = T::one() / largest;
+    let factor = one / largest;
     // Homogeneous pixel coordinates about the reference: small numbers near the triangle, so little cancels.
-    let (hx, hy) = (T::of(screen.half[0]), T::of(screen.half[1]));
-    let (rx, ry) = (T::of(reference[0] as f64), T::of(reference[1] as f64));
-    let (kx, ky) = (hx - rx, hy - ry);
+    let (hx, hy) = (like.num(screen.half[0]), like.num(screen.half[1]));
+    let (kx, ky) = (hx - reference[0], hy - reference[1]);
     let mut v = clip;
     for i in 0..3 {
         let (x, y, w) = (clip[i][0] * factor, clip[i][1] * factor, clip[i][3] * factor);
         v[i] = [x * hx + w * kx, w * ky - y * hy, clip[i][2] * factor, w];
     }
-    let mut weights = [[T::zero(); 3]; 3];
-    let mut determinant = T::zero();
+    let mut weights = [[zero; 3]; 3];
+    let mut determinant = zero;
     for i in 0..3 {
         let (p, q) = (v[(i + 1) % 3], v[(i + 2) % 3]);
         weights[i] = [p[1] * q[3] - p[3] * q[1], p[3] * q[0] - p[0] * q[3], p[0] * q[1] - p[1] * q[0]];
-        determinant += v[i][3] * weights[i][2];
+        determinant = determinant + v[i][3] * weights[i][2];
     }
     // The depth of the vertex farthest from the eye's plane anchors the depth plane: only differences to it are
     // interpolated, so a triangle of constant depth keeps it to the bit.
     let mut farthest = v[0][3];
     let mut anchor = v[0][2] / v[0][3];
-    let (mut low, mut high, mut behind) = (anchor, anchor, v[0][3] <= T::zero());
+    let (mut low, mut high, mut behind) = (anchor, anchor, v[0][3].less_eq(zero));
     for i in 1..3 {
         let ratio = v[i][2] / v[i][3];
-        anchor = T::select(v[i][3] > farthest, ratio, anchor);
-        farthest = Lanes::max(farthest, v[i][3]);
-        (low, high) = (Lanes::min(low, ratio), Lanes::max(high, ratio));
-        behind |= v[i][3] <= T::zero();
+        anchor = V::select(farthest.less(v[i][3]), ratio, anchor);
+        farthest = farthest.max(v[i][3]);
+        (low, high) = (low.min(ratio), high.max(ratio));
+        behind = behind | v[i][3].less_eq(zero);
     }
-    let sign = if screen.reversed { -T::one() } else { T::one() };
+    let sign = if screen.reversed { -one } else { one };
     let inverse = sign / determinant;
-    let mut depth = [T::zero(), T::zero(), sign * anchor];
+    let mut depth = [zero, zero, sign * anchor];
     for i in 0..3 {
         let difference = (v[i][2] - anchor * v[i][3]) * inverse;
         for k in 0..3 {
-            depth[k] += weights[i][k] * difference;
+            depth[k] = depth[k] + weights[i][k] * difference;
         }
     }
     // Behind the eye `z / w` bounds nothing; what is left of the triangle lies between near and far.
-    let (least, most) = (T::of(screen.depth_low), T::one());
-    (low, high) = if behind { (least, most) } else { (Lanes::max(low, least), Lanes::min(high, most)) };
-    let depth_range = if screen.reversed { [-high, -low] } else { [low, high] };
-    let flip = if determinant < T::zero() { -T::one() } else { T::one() };
+    let least = like.num(screen.depth_low);
+    low = V::select(behind, least, low.max(least));
+    high = V::select(behind, one, high.min(one));
+    let range = if screen.reversed { [-high, -low] } else { [low, high] };
     // No determinant, no planes: the triangle is edge-on to within rounding, and its anchor stands for it.
-    let sound = (Lanes::abs(determinant) > T::zero()) & Lanes::abs(inverse).is_finite();
+    let sound = zero.less(determinant.abs()) & inverse.abs().less_eq(like.like(V::Elem::MAX));
+    let flip = V::select(determinant.less(zero), -one, one);
     for i in 0..3 {
         for k in 0..3 {
-            let fallback = if k == 2 { T::one() } else { T::zero() };
-            weights[i][k] = T::select(sound, weights[i][k] * flip, fallback);
+            weights[i][k] = V::select(sound, weights[i][k] * flip, if k == 2 { one } else { zero });
         }
-        let fallback = if i == 2 { sign * anchor } else { T::zero() };
-        depth[i] = T::select(sound, depth[i], fallback);
+        depth[i] = V::select(sound, depth[i], if i == 2 { sign * anchor } else { zero });
     }
-    Planes { face, reference: [rx, ry], weights, depth, depth_range }
+    (weights, depth, range)
 }
 
 impl Planes<f64> {

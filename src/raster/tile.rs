@@ -6,10 +6,12 @@
 //! Triangles come in the order of their faces, and only a strictly nearer depth replaces another: of equal
 //! depths the lowest face wins.
 
-use super::bin::{Bins, Grid, PIECE};
+use super::bin::{Bins, Grid, PIECE, Piece};
 use super::samples::{SUBPIXEL_BITS, SUBPIXELS};
-use super::setup::{Edges, Planes, Screen, area, planes};
-use crate::real::Real;
+use super::setup::{Edges, Planes, Screen, area, planes, planes_in_lanes};
+use crate::real::{Lanes, Real};
+use crate::simd::*;
+use fearless_simd::{i32x8, mask32x8, u32x8};
 
 pub const TILE_BITS: u32 = 6;
 /// Pixels along a tile's side.
@@ -100,78 +102,155 @@ impl<T: Real> Tile<T> {
 
     /// Draws all triangles of tile `index`.
     #[inline(always)]
-    pub fn draw(&mut self, index: usize, scene: &Scene<T>) {
+    pub fn draw<S: Simd>(&mut self, s: S, index: usize, scene: &Scene<T>) {
         self.clear(index, scene);
+        let mut batch = Batch { triangles: [Small::default(); LANES], len: 0 };
         for bins in scene.bins {
             for &entry in bins.entries(index) {
-                if entry & PIECE == 0 {
-                    let face = scene.faces[entry as usize];
-                    let [i, j, k] = [face[0] as usize, face[1] as usize, face[2] as usize];
-                    let vertices = [scene.snapped[i], scene.snapped[j], scene.snapped[k]];
-                    self.draw_triangle(scene, &vertices, || {
-                        let clip = [scene.clip[i], scene.clip[j], scene.clip[k]];
-                        let [x, y] = vertices[farthest(&clip)];
-                        let reference = [x >> SUBPIXEL_BITS, y >> SUBPIXEL_BITS];
-                        planes(entry as i32, clip, reference, scene.screen)
-                    });
+                if entry & PIECE != 0 {
+                    self.draw_batch(s, scene, &mut batch);
+                    self.draw_piece(s, scene, &bins.pieces[(entry & !PIECE) as usize]);
+                    continue;
+                }
+                let [i, j, k] = scene.faces[entry as usize];
+                let vertices =
+                    [scene.snapped[i as usize], scene.snapped[j as usize], scene.snapped[k as usize]];
+                let Some(region) = self.region(scene, &vertices) else { continue };
+                if self.samples.len() == 1 && region.small {
+                    let rows = region.rows(s, self.samples[0]);
+                    if rows != 0 {
+                        let [x, y] = [region.x[0] as u16, region.y[0] as u16];
+                        batch.triangles[batch.len] = Small { face: entry, rows, x, y };
+                        batch.len += 1;
+                        if batch.len == LANES {
+                            self.draw_batch(s, scene, &mut batch);
+                        }
+                    }
                 } else {
-                    let piece = bins.pieces[(entry & !PIECE) as usize];
-                    self.draw_triangle(scene, &piece.vertices, || {
-                        // Cut triangles are few and may be huge: their planes are worth double precision.
-                        let clip = scene.faces[piece.face as usize].map(|k| scene.clip[k as usize]);
-                        let clip = clip.map(|v| v.map(|c| c.to_f64()));
-                        planes(piece.face as i32, clip, piece.reference, scene.screen).to()
-                    });
+                    self.draw_batch(s, scene, &mut batch);
+                    self.draw_region(s, &region, || scene.planes(entry));
                 }
             }
         }
+        self.draw_batch(s, scene, &mut batch);
     }
 
+    /// Cut triangles are few and may be huge: their planes are worth double precision.
     #[inline(always)]
-    fn draw_triangle(&mut self, scene: &Scene<T>, v: &[[i32; 2]; 3], planes: impl Fn() -> Planes<T>) {
+    fn draw_piece<S: Simd>(&mut self, s: S, scene: &Scene<T>, piece: &Piece) {
+        if let Some(region) = self.region(scene, &piece.vertices) {
+            self.draw_region(s, &region, || {
+                let clip = scene.faces[piece.face as usize].map(|k| scene.clip[k as usize]);
+                let clip = clip.map(|v| v.map(|c| c.to_f64()));
+                planes(piece.face as i32, clip, piece.reference, scene.screen).to()
+            });
+        }
+    }
+
+    /// The planes of up to eight small triangles at once, then their depth tests one by one.
+    #[inline(always)]
+    fn draw_batch<S: Simd>(&mut self, s: S, scene: &Scene<T>, batch: &mut Batch) {
+        if batch.len == 0 {
+            return;
+        }
+        // Unused lanes repeat the first triangle.
+        let mut clip = [[[T::zero(); LANES]; 4]; 3];
+        let mut reference = [[T::zero(); LANES]; 2];
+        for l in 0..LANES {
+            let face = batch.triangles[if l < batch.len { l } else { 0 }].face;
+            let (v, [x, y]) = scene.triangle(face);
+            for i in 0..3 {
+                for k in 0..4 {
+                    clip[i][k][l] = v[i][k];
+                }
+            }
+            reference[0][l] = T::of(x as f64);
+            reference[1][l] = T::of(y as f64);
+        }
+        let lanes = |a: &[T; LANES]| T::V8::from_slice(s, a);
+        let zero = T::V8::splat(s, T::zero());
+        let mut v = [[zero; 4]; 3];
+        for i in 0..3 {
+            for k in 0..4 {
+                v[i][k] = lanes(&clip[i][k]);
+            }
+        }
+        let (weights, depth, range) =
+            planes_in_lanes(v, [lanes(&reference[0]), lanes(&reference[1])], scene.screen);
+        let first = self.visible.len();
+        for (l, t) in batch.triangles[..batch.len].iter().enumerate() {
+            let mut p = Planes {
+                face: t.face as i32,
+                reference: [reference[0][l], reference[1][l]],
+                weights: [[T::zero(); 3]; 3],
+                depth: [T::zero(); 3],
+                depth_range: [range[0].as_slice()[l], range[1].as_slice()[l]],
+            };
+            for i in 0..3 {
+                for k in 0..3 {
+                    p.weights[i][k] = weights[i][k].as_slice()[l];
+                }
+                p.depth[i] = depth[i].as_slice()[l];
+            }
+            self.visible.push(p);
+        }
+        for (l, t) in batch.triangles[..batch.len].iter().enumerate() {
+            let (mut rows, mut y) = (t.rows, t.y as usize);
+            let p = self.visible[first + l];
+            while rows != 0 {
+                if rows & 0xff != 0 {
+                    self.test(s, (first + l) as u32, &p, rows & 0xff, 0, t.x as usize, y);
+                }
+                rows >>= LANES;
+                y += 1;
+            }
+        }
+        batch.len = 0;
+    }
+
+    /// The pixels of the tile that a triangle may cover, if any.
+    #[inline(always)]
+    fn region(&self, scene: &Scene<T>, v: &[[i32; 2]; 3]) -> Option<Region> {
         let v = if area(v) > 0 { *v } else { [v[0], v[2], v[1]] };
         let [[x0, x1], [y0, y1]] = scene.grid.bounds(&v);
         let (tx, ty) = (self.x as i32, self.y as i32);
-        let (x0, x1) = ((x0 - tx).max(0), (x1 - tx).min(self.width as i32 - 1));
-        let (y0, y1) = ((y0 - ty).max(0), (y1 - ty).min(self.height as i32 - 1));
+        let x = [(x0 - tx).max(0), (x1 - tx).min(self.width as i32 - 1)];
+        let y = [(y0 - ty).max(0), (y1 - ty).min(self.height as i32 - 1)];
         let mut edges = Edges::new(&v, [tx << SUBPIXEL_BITS, ty << SUBPIXEL_BITS]);
         // Edges of small triangles fit 32 bits over the tile as they are; others only if they cross it.
-        if large(&v) {
+        let large = large(&v);
+        if large {
             for i in 0..3 {
                 let (least, most) = edges.range(i, (TILE as i64) << SUBPIXEL_BITS);
                 if most < 0 {
-                    return;
+                    return None;
                 }
                 if least >= 0 {
                     (edges.a[i], edges.b[i], edges.c[i]) = (0, 0, 0);
                 }
             }
         }
+        let small = !large & (x[1] - x[0] < LANES as i32) & (y[1] - y[0] < LANES as i32);
+        Some(Region { edges, x, y, small })
+    }
+
+    /// Draws a triangle of any size; `planes` is asked for once a sample is covered.
+    #[inline(always)]
+    fn draw_region<S: Simd>(&mut self, s: S, region: &Region, planes: impl Fn() -> Planes<T>) {
+        let Region { ref edges, x: [x0, x1], y: [y0, y1], .. } = *region;
         let id = self.visible.len() as u32;
         for sample in 0..self.samples.len() {
-            let [sx, sy] = self.samples[sample];
-            let mut corner = [0i32; 3];
-            let mut steps = [[0i32; LANES]; 3];
-            for i in 0..3 {
-                let c = edges.c[i] + edges.a[i] as i64 * sx as i64 + edges.b[i] as i64 * sy as i64;
-                corner[i] = (c >> SUBPIXEL_BITS) as i32;
-                for l in 0..LANES {
-                    steps[i][l] = edges.a[i] * l as i32;
-                }
-            }
+            let corner = region.at_sample(self.samples[sample]);
             for y in y0..=y1 {
                 let mut x = x0;
                 while x <= x1 {
-                    let mut e = [0i32; 3];
-                    for i in 0..3 {
-                        e[i] = corner[i] + edges.b[i] * y + edges.a[i] * x;
-                    }
-                    let outside = outside(e, &steps);
-                    if outside.iter().fold(-1, |all, &lane| all & lane) >= 0 {
+                    let bits = edges_cover(s, edges, &corner, x, y);
+                    if bits != 0 {
                         if self.visible.len() as u32 == id {
                             self.visible.push(planes());
                         }
-                        self.test(id, &outside, sample, x as usize, y as usize);
+                        let p = self.visible[id as usize];
+                        self.test(s, id, &p, bits, sample, x as usize, y as usize);
                     }
                     x += LANES as i32;
                 }
@@ -179,31 +258,134 @@ impl<T: Real> Tile<T> {
         }
     }
 
-    /// Depth test of eight pixels of triangle `id`, of which those with a negative mark are outside.
+    /// Depth test of eight pixels of triangle `id`, of which those in `bits` are covered.
     #[inline(always)]
-    fn test(&mut self, id: u32, outside: &[i32; LANES], sample: usize, x: usize, y: usize) {
+    fn test<S: Simd>(&mut self, s: S, id: u32, p: &Planes<T>, bits: u64, sample: usize, x: usize, y: usize) {
         let [ox, oy] = self.offset(sample);
-        let p = self.visible[id as usize];
         // Pixels and offsets are small multiples of 1/16: these differences are exact.
-        let dx = T::of((self.x + x) as f64) + ox - p.reference[0];
-        let dy = T::of((self.y + y) as f64) + oy - p.reference[1];
+        let dx = T::of((self.x + x) as i32 as f64) + ox - p.reference[0];
+        let dy = T::of((self.y + y) as i32 as f64) + oy - p.reference[1];
         let at = (sample * TILE + y) * PITCH + x;
-        let depth: &mut [T; LANES] = (&mut self.depth[at..at + LANES]).try_into().expect("eight lanes");
-        let ids: &mut [u32; LANES] = (&mut self.ids[at..at + LANES]).try_into().expect("eight lanes");
-        for l in 0..LANES {
-            let z = p.depth_at(dx + T::of(l as f64), dy);
-            let nearer = (outside[l] >= 0) & (z < depth[l]);
-            depth[l] = T::select(nearer, z, depth[l]);
-            ids[l] = if nearer { id } else { ids[l] };
+        let depth = &mut self.depth[at..at + LANES];
+        let old = T::V8::from_slice(s, depth);
+        let z = columns::<T, S>(s) + dx;
+        let z = z * p.depth[0] + (p.depth[2] + p.depth[1] * dy);
+        let z = Lanes::max(z, T::V8::splat(s, p.depth_range[0]));
+        let z = Lanes::min(z, T::V8::splat(s, p.depth_range[1]));
+        let bits = z.simd_lt(old).to_bitmask() & bits;
+        if bits == 0 {
+            return;
         }
+        let nearer = <T::V8<S> as SimdBase<S>>::Mask::from_bitmask(s, bits);
+        nearer.select(z, old).store_slice(depth);
+        let ids = &mut self.ids[at..at + LANES];
+        let nearer = mask32x8::from_bitmask(s, bits);
+        nearer.select(u32x8::splat(s, id), u32x8::from_slice(s, ids)).store_slice(ids);
     }
 }
 
-/// The vertex with the largest `w`, where the weights are smallest: planes taken about it lose least by cancellation.
+/// 0, 1 … 7.
 #[inline(always)]
-fn farthest<T: Real>(clip: &[[T; 4]; 3]) -> usize {
-    let i = usize::from(clip[1][3] > clip[0][3]);
-    if clip[2][3] > clip[i][3] { 2 } else { i }
+pub fn columns<T: Real, S: Simd>(s: S) -> T::V8<S> {
+    let mut columns = [T::zero(); LANES];
+    for l in 0..LANES {
+        columns[l] = T::of(l as f64);
+    }
+    T::V8::from_slice(s, &columns)
+}
+
+/// Which of the eight pixels from `(x, y)` no edge excludes, by bits.
+#[inline(always)]
+fn edges_cover<S: Simd>(s: S, edges: &Edges, corner: &[i32; 3], x: i32, y: i32) -> u64 {
+    let iota = i32x8::from_slice(s, &[0, 1, 2, 3, 4, 5, 6, 7]);
+    let mut e = [iota; 3];
+    for i in 0..3 {
+        e[i] = iota * edges.a[i] + (corner[i] + edges.a[i] * x + edges.b[i] * y);
+    }
+    (e[0] | e[1] | e[2]).simd_ge(i32x8::splat(s, 0)).to_bitmask()
+}
+
+impl<T: Real> Scene<'_, T> {
+    /// Vertices of an uncut face, and the pixel about which its planes are taken: that of the vertex with the largest
+    /// `w`, where the weights are smallest, so that least is lost by cancellation.
+    #[inline(always)]
+    fn triangle(&self, face: u32) -> ([[T; 4]; 3], [i32; 2]) {
+        let [i, j, k] = self.faces[face as usize];
+        let clip = [self.clip[i as usize], self.clip[j as usize], self.clip[k as usize]];
+        let (mut farthest, mut w) = (i, clip[0][3]);
+        for (vertex, v) in [(j, clip[1]), (k, clip[2])] {
+            farthest = if v[3] > w { vertex } else { farthest };
+            w = if v[3] > w { v[3] } else { w };
+        }
+        let [x, y] = self.snapped[farthest as usize];
+        (clip, [x >> SUBPIXEL_BITS, y >> SUBPIXEL_BITS])
+    }
+
+    #[inline(always)]
+    fn planes(&self, face: u32) -> Planes<T> {
+        let (clip, reference) = self.triangle(face);
+        planes(face as i32, clip, reference, self.screen)
+    }
+}
+
+/// A triangle of at most eight by eight pixels whose planes wait to be computed with those of others.
+#[derive(Clone, Copy, Default)]
+struct Small {
+    face: u32,
+    /// Top left pixel in the tile, and which pixels are covered from there: eight bits a row.
+    x: u16,
+    y: u16,
+    rows: u64,
+}
+
+struct Batch {
+    triangles: [Small; LANES],
+    len: usize,
+}
+
+/// Pixels of a tile that a triangle may cover, and its edges about the tile's corner.
+struct Region {
+    edges: Edges,
+    /// First and last column and row.
+    x: [i32; 2],
+    y: [i32; 2],
+    /// At most eight by eight pixels.
+    small: bool,
+}
+
+impl Region {
+    /// Edge functions in pixels, rounded down, at a sample of the tile's first pixel.
+    #[inline(always)]
+    fn at_sample(&self, [sx, sy]: [i32; 2]) -> [i32; 3] {
+        let mut out = [0; 3];
+        for i in 0..3 {
+            let e = &self.edges;
+            let c = e.c[i] + e.a[i] as i64 * sx as i64 + e.b[i] as i64 * sy as i64;
+            out[i] = (c >> SUBPIXEL_BITS) as i32;
+        }
+        out
+    }
+
+    /// Coverage of a small region, eight bits a row.
+    #[inline(always)]
+    fn rows<S: Simd>(&self, s: S, sample: [i32; 2]) -> u64 {
+        let corner = self.at_sample(sample);
+        let iota = i32x8::from_slice(s, &[0, 1, 2, 3, 4, 5, 6, 7]);
+        let Edges { a, b, .. } = self.edges;
+        let mut e = [iota; 3];
+        for i in 0..3 {
+            e[i] = iota * a[i] + (corner[i] + a[i] * self.x[0] + b[i] * self.y[0]);
+        }
+        let mut rows = 0;
+        for y in 0..=self.y[1] - self.y[0] {
+            let inside = (e[0] | e[1] | e[2]).simd_ge(i32x8::splat(s, 0)).to_bitmask();
+            rows |= inside << (LANES as i32 * y);
+            for i in 0..3 {
+                e[i] += b[i];
+            }
+        }
+        rows
+    }
 }
 
 /// Whether edge functions could exceed 32 bits over a tile that the triangle touches.
@@ -217,16 +399,6 @@ fn large(v: &[[i32; 2]; 3]) -> bool {
         span = low.abs_diff(high).max(span);
     }
     span >= limit
-}
-
-/// Negative at those of eight pixels that an edge function `e + step` excludes.
-#[inline(always)]
-fn outside(e: [i32; 3], steps: &[[i32; LANES]; 3]) -> [i32; LANES] {
-    let mut out = [0; LANES];
-    for l in 0..LANES {
-        out[l] = (e[0] + steps[0][l]) | (e[1] + steps[1][l]) | (e[2] + steps[2][l]);
-    }
-    out
 }
 
 /// The end of the stretch of equal triangles that starts at `start`.

@@ -148,7 +148,7 @@ def main():
     parser.add_argument("--save", help="write the last pair of pictures to this stem")
     args = parser.parse_args()
     sl.set_threads(2)
-    print(f"{'triangles':>9} {'picture':>10} {'llvmpipe':>9} {'ours':>8} {'ratio':>6}   {'float32':>8} {'G-buffer':>8}  ms")
+    print("triangles    picture  llvmpipe     ours  ratio    float32 G-buffer  ms")
     for triangles in (70_000, 1_000_000):
         mesh = load(args.model, triangles)
         for size in SIZES:
