@@ -4,6 +4,7 @@
 //! - [`hard`]: one comparison
 //! - [`pcf`]: percentage-closer filtering over a fixed width
 //! - [`pcss`]: percentage-closer soft shadows, whose width follows from the blockers
+//! - [`ray_traced`](mod@ray_traced): rays to the light
 //!
 //! The parts: `lookup` (the map, the bias, and the taps that all filters share), `pattern` (where the taps of a filter lie).
 
@@ -12,4 +13,5 @@ pub(crate) mod lookup;
 pub(crate) mod pattern;
 pub mod pcf;
 pub mod pcss;
+pub mod ray_traced;
 pub mod shadow_map;
