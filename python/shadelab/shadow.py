@@ -1,7 +1,7 @@
 """Shadow maps and their filters: every function returns the lit fraction of a light, in [0, 1].
 
 A `ShadowMap` holds the depth of a scene as a light sees it, linear along the light's axis. `hard` compares once, `pcf`
-averages comparisons over a fixed width, `pcss` over the width that the blockers call for. `ray_traced` asks a BVH instead.
+averages comparisons over a fixed width, `pcss` over the width that the blockers call for; `ray_traced` needs no map.
 """
 
 from __future__ import annotations
@@ -756,8 +756,8 @@ def ray_traced(
     receivers : array_like, shape (..., 3)
         Points in the world.
     normals : array_like, shape (..., 3), or None
-        Unit normals of the receivers. With them, points of the light count by the irradiance that they would send, and rays
-        start a little off the surface; without, by area, and from the receiver itself.
+        Unit normals of the receivers. With them, points of the light count by the irradiance that they would send, and
+        rays start a little off the surface; without, by area, and from the receiver itself.
     light : PointLight, RectLight or DirectionalLight
         What rays are sent to; one ray suffices for a light without extent.
     samples : int
@@ -774,8 +774,8 @@ def ray_traced(
     Returns
     -------
     ndarray, shape (...)
-        The lit fraction; 1 where no point of the light is above the receiver's horizon; NaN where a receiver or normal is not
-        finite.
+        The lit fraction; 1 where no point of the light is above the receiver's horizon; NaN where a receiver or normal
+        is not finite.
 
     Raises
     ------
@@ -784,9 +784,9 @@ def ray_traced(
 
     Notes
     -----
-    Tends to the exact fraction as `samples` grows: the error of a penumbra falls about as samples^(-3/4), since a shadow edge
-    across the stratified light is all that varies. With normals the estimate is a ratio of two sums, whose bias falls as
-    1 / samples; it is exact, without noise, where the light is wholly seen or wholly hidden. Surfaces nearer to the
+    Tends to the exact fraction as `samples` grows: the error of a penumbra falls about as samples^(-3/4), since a
+    shadow edge across the stratified light is all that varies. With normals the estimate is a ratio of two sums, whose
+    bias falls as 1 / samples; it is exact, without noise, where the light is wholly seen or hidden. Surfaces nearer to the
     light than 1e-4 of the distance hide nothing. Cost: `samples` shadow rays.
 
     References
