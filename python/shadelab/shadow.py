@@ -18,11 +18,13 @@ from . import _arrays
 from ._arrays import Floats
 from ._kernels import shadow as _kernels
 from .accel import BVH
+from .light import DirectionalLight, PointLight, RectLight
 
 __all__ = ["Cost", "PCSS", "ShadowMap", "cost", "hard", "pcf", "pcss", "ray_traced", "shadow_map"]
 
 Kernel: TypeAlias = Literal["vogel", "box", "grid"]
 Cull: TypeAlias = Literal["none", "back", "front"]
+Light: TypeAlias = DirectionalLight | PointLight | RectLight
 _KERNELS = ("vogel", "box", "grid")
 _MAX_RESOLUTION = 16384
 _MAX_SAMPLES = 4096
@@ -209,7 +211,7 @@ def _sides(name: str, value: Any) -> tuple[float, float]:
 def shadow_map(
     positions: ArrayLike,
     faces: ArrayLike,
-    light: Any,
+    light: Light,
     resolution: int | tuple[int, int] = 1024,
     *,
     receivers: ArrayLike | None = None,
@@ -313,10 +315,10 @@ def _frame_along(axis: NDArray[np.float64]) -> NDArray[np.float64]:
 
 
 def _light_frame(
-    light: Any, points: Floats, receivers: Floats | None
+    light: Light, points: Floats, receivers: Floats | None
 ) -> tuple[bool, NDArray[np.float64], NDArray[np.float64], tuple[float, float]]:
     """Whether the map is perspective, its origin, its frame, and the light's sides."""
-    if hasattr(light, "edge_u"):
+    if isinstance(light, RectLight):
         u, v = np.asarray(light.edge_u, np.float64), np.asarray(light.edge_v, np.float64)
         axis, right = _unit("light", np.cross(u, v)), _unit("light", u)
         frame = np.stack([right, np.cross(right, axis), axis])
@@ -325,12 +327,12 @@ def _light_frame(
     seen = points if receivers is None or not receivers.size else receivers
     finite = seen[np.isfinite(seen).all(-1)].astype(np.float64)
     middle = (finite.min(0) + finite.max(0)) / 2 if len(finite) else np.zeros(3)
-    if hasattr(light, "position"):
+    if isinstance(light, PointLight):
         position = np.asarray(light.position, np.float64)
         away = middle - position
         axis = _unit("light", away) if np.linalg.norm(away) > 0 else np.array([0.0, -1.0, 0.0])
         return True, position, _frame_along(axis), (0.0, 0.0)
-    if hasattr(light, "direction"):
+    if isinstance(light, DirectionalLight):
         return False, middle, _frame_along(_unit("light", np.asarray(light.direction, np.float64))), (0.0, 0.0)
     raise TypeError(f"light: expected a PointLight, RectLight or DirectionalLight, got {type(light).__name__}")
 
@@ -739,7 +741,7 @@ def ray_traced(
     bvh: BVH,
     receivers: ArrayLike,
     normals: ArrayLike | None,
-    light: Any,
+    light: Light,
     samples: int = 16,
     *,
     seed: int = 0,
@@ -821,11 +823,11 @@ def ray_traced(
         except ValueError:
             raise ValueError(f"ignore_face: expected shape {shape}, got {ids.shape}") from None
     zero = [0.0, 0.0, 0.0]
-    if hasattr(light, "edge_u"):
+    if isinstance(light, RectLight):
         kind, vectors = "rect", [list(map(float, v)) for v in (light.center, light.edge_u, light.edge_v)]
-    elif hasattr(light, "position"):
+    elif isinstance(light, PointLight):
         kind, vectors, n = "point", [list(map(float, light.position)), zero, zero], 1
-    elif hasattr(light, "direction"):
+    elif isinstance(light, DirectionalLight):
         towards = -_unit("light", np.asarray(light.direction, np.float64))
         kind, vectors, n = "directional", [towards.tolist(), zero, zero], 1
     else:

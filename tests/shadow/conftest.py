@@ -4,6 +4,7 @@ from types import SimpleNamespace
 
 import numpy as np
 import pytest
+from shadelab.light import DirectionalLight, PointLight, RectLight
 
 DOWN = [[1, 0, 0], [0, 0, -1], [0, -1, 0]]
 
@@ -23,24 +24,22 @@ def join(*meshes):
 
 def rect_light(height=4.0, side=1.0, center=(0.0, 0.0)):
     """A square light that shines down."""
-    return SimpleNamespace(
-        center=np.array([center[0], height, center[1]]), edge_u=np.array([side, 0, 0]), edge_v=np.array([0, 0, side])
-    )
+    return RectLight(center=(center[0], height, center[1]), edge_u=(side, 0, 0), edge_v=(0, 0, side))
 
 
 def lights():
     """One of each kind, above and about the origin."""
     return {
         "rect": rect_light(),
-        "point": SimpleNamespace(position=np.array([0.2, 4.0, 0.1])),
-        "sun": SimpleNamespace(direction=np.array([0.3, -1.0, 0.2])),
+        "point": PointLight((0.2, 4.0, 0.1)),
+        "sun": DirectionalLight((0.3, -1.0, 0.2)),
     }
 
 
 def towards_light(light, points):
     """Unit vectors from points to a light's centre."""
-    if hasattr(light, "direction"):
-        away = np.broadcast_to(-light.direction, points.shape)
+    if isinstance(light, DirectionalLight):
+        away = np.broadcast_to(-np.array(light.direction), points.shape)
     else:
         away = getattr(light, "center", getattr(light, "position", None)) - points
     return away / np.linalg.norm(away, axis=-1, keepdims=True)

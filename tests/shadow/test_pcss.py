@@ -62,10 +62,8 @@ def test_a_disk_light_has_the_cosine_profile(scenes):
 
 
 def test_an_orthographic_map_takes_an_angle(scenes):
-    from types import SimpleNamespace
-
     ground, blocker = scenes.quad(0.0, (-4, 4), (-1, 1), float), scenes.quad(2.0, (-4, 0), (-4, 4), float)
-    m = sl.shadow.shadow_map(*scenes.join(ground, blocker), SimpleNamespace(direction=np.array([0, -1.0, 0])), 2048)
+    m = sl.shadow.shadow_map(*scenes.join(ground, blocker), sl.light.DirectionalLight((0, -1, 0)), 2048)
     x = np.linspace(-0.5, 0.5, 101)
     found = sl.shadow.pcss(
         m,
