@@ -69,7 +69,7 @@ class Plan:
         return next((p for p in self.passes if p.name == name), None)
 
     def __str__(self) -> str:
-        width = max((len(x.name) for x in (*self.passes, *self.left_out)), default=0)
+        width = max((len(name) for name in [p.name for p in self.passes] + [x.name for x in self.left_out]), default=0)
         lines = [f"{self.size[0]} x {self.size[1]}, {len(self.passes)} passes"]
         for number, p in enumerate(self.passes, 1):
             settings = ", ".join(f"{k}={v!r}" for k, v in p.settings.items())
@@ -322,15 +322,16 @@ def _shadow_passes(
     """How the shadow of one light is found, for a light that reaches something."""
     if facts.unshadowed:
         return [], [LeftOut(f"shadow{suffix}", facts.unshadowed)]
-    left_out = []
+    left_out: list[LeftOut] = []
+    settings: dict[str, Any] = {}
     width, footprint = 0.0, facts.nearest * facts.pixel
     if isinstance(lamp, light.RectLight):
         width = _widest_penumbra(lamp, facts)
     if not isinstance(lamp, light.RectLight):
-        technique, settings, reason = "hard", {}, "the light has no extent: its shadows have no penumbra"
+        technique, reason = "hard", "the light has no extent: its shadows have no penumbra"
         left_out.append(LeftOut(f"penumbra{suffix}", "no area light: a hard shadow suffices"))
     elif width < footprint:
-        technique, settings = "hard", {}
+        technique = "hard"
         reason = f"penumbrae are at most {width:.2g} wide, less than a pixel ({footprint:.2g})"
         left_out.append(LeftOut(f"penumbra{suffix}", "narrower than a pixel: a hard shadow suffices"))
     elif measured is not None:
@@ -394,10 +395,10 @@ def plan(
 
     Notes
     -----
-    Decided by necessity: no pass without surfaces, lights, or something that can stand between them (one plane and one convex
-    body shade nothing); no map for a light that emits nothing or faces away; no penumbra for lights without extent or
-    where similar triangles bound it below a pixel. Bounds are on the safe side: a pass may be there without need, never
-    missing with need. Costs a few milliseconds a 100 000 triangles.
+    Decided by necessity: no pass without surfaces, lights, or something that can stand between them (one plane and
+    one convex body shade nothing); no map for a light that emits nothing or faces away; no penumbra for lights without
+    extent or where similar triangles bound it below a pixel. Bounds are on the safe side: a pass may be there without
+    need, never missing with need. Costs a few milliseconds a 100 000 triangles.
 
     Examples
     --------
@@ -506,8 +507,8 @@ def _g_buffer(arrays: Any, camera: Any, size: tuple[int, int]) -> _Seen:
     base = arrays.base_color[material]
     if arrays.colors is not None:
         base = base * mixed(arrays.colors)
-    named = (np.ascontiguousarray(x, np.float32) for x in (points, geometric, shading, base))
-    return _Seen(drawn.face, covered, *named, material)
+    points, geometric, shading, base = (np.ascontiguousarray(x, np.float32) for x in (points, geometric, shading, base))
+    return _Seen(drawn.face, covered, points, geometric, shading, base, material)
 
 
 def _above_horizon(lamp: Any, seen: _Seen) -> NDArray[np.bool_]:
@@ -532,8 +533,8 @@ def _lit(how: Pass, lamp: Any, seen: _Seen, chart: Any, bvh: BVH | None) -> Floa
     if technique == "ray_traced":
         assert bvh is not None
         return shadow.ray_traced(bvh, seen.points, seen.geometric, lamp, **knobs)
-    function: Callable[..., Floats] = {"hard": shadow.hard, "pcf": shadow.pcf, "pcss": shadow.pcss}[technique]
-    return function(chart, seen.points, seen.geometric, **knobs)
+    techniques: dict[str, Callable[..., Any]] = {"hard": shadow.hard, "pcf": shadow.pcf, "pcss": shadow.pcss}
+    return np.asarray(techniques[technique](chart, seen.points, seen.geometric, **knobs))
 
 
 class _Clock:
@@ -624,9 +625,7 @@ def render(
         if kind == "bvh":
             bvh = BVH(arrays.positions, arrays.faces)
         elif kind == "shadow map":
-            chart = shadow.shadow_map(
-                arrays.positions, arrays.faces, lamps[index], **p.settings, receivers=seen.points
-            )
+            chart = shadow.shadow_map(arrays.positions, arrays.faces, lamps[index], **p.settings, receivers=seen.points)
         elif kind == "shadow":
             seeded = p.settings.get("technique") != "hard" and "seed" not in p.settings
             how = Pass(p.name, p.reason, {**p.settings, "seed": seed}) if seeded else p
@@ -635,7 +634,9 @@ def render(
             for i in p.settings["lights"]:
                 fraction = fractions.setdefault(i, np.ones(len(seen.points), np.float32))
                 fraction *= _above_horizon(lamps[i], seen)
-                radiance += _unshadowed(lamps[i], seen, arrays, scene.camera, p.settings["samples"], seed) * fraction[:, None]
+                radiance += (
+                    _unshadowed(lamps[i], seen, arrays, scene.camera, p.settings["samples"], seed) * fraction[:, None]
+                )
         elif kind == "ambient":
             radiance += seen.base_color * background
         elif kind == "emission":

@@ -25,6 +25,7 @@ __all__ = ["Cost", "PCSS", "ShadowMap", "cost", "hard", "pcf", "pcss", "ray_trac
 Kernel: TypeAlias = Literal["vogel", "box", "grid"]
 Cull: TypeAlias = Literal["none", "back", "front"]
 Light: TypeAlias = DirectionalLight | PointLight | RectLight
+Search: TypeAlias = Literal["frustum", "region"]
 _KERNELS = ("vogel", "box", "grid")
 _MAX_RESOLUTION = 16384
 _MAX_SAMPLES = 4096
@@ -615,6 +616,7 @@ def pcss(
     light_size: float | tuple[float, float] | None = ...,
     blocker_samples: int = ...,
     filter_samples: int = ...,
+    search: Search = ...,
     kernel: Kernel | None = ...,
     seed: int | None = ...,
     bias: float = ...,
@@ -633,6 +635,7 @@ def pcss(
     light_size: float | tuple[float, float] | None = ...,
     blocker_samples: int = ...,
     filter_samples: int = ...,
+    search: Search = ...,
     kernel: Kernel | None = ...,
     seed: int | None = ...,
     bias: float = ...,
@@ -650,6 +653,7 @@ def pcss(
     light_size: float | tuple[float, float] | None = None,
     blocker_samples: int = 16,
     filter_samples: int = 32,
+    search: Search = "frustum",
     kernel: Kernel | None = None,
     seed: int | None = 0,
     bias: float = 0.0,
@@ -670,6 +674,9 @@ def pcss(
         default. For an orthographic map the angle in radians that the light spans (0.0093 for the sun).
     blocker_samples, filter_samples : int
         Texels read to find the blockers' mean depth, and to filter; at most 4096 each.
+    search : {"frustum", "region"}
+        What counts as a blocker: what lies between the receiver and the light, or, as first published, all that blocks
+        in the region of the map that the light could be hidden in.
     kernel : {"vogel", "box", "grid"}, optional
         As in `pcf`; "box" is the shape of a rectangular light and the default for it, "vogel" that of a disk.
     seed, bias, slope_bias, normal_offset, receiver_plane
@@ -691,7 +698,8 @@ def pcss(
 
     Notes
     -----
-    1. Blocker search over the region in which the light could be hidden by something at the map's least depth.
+    1. Blocker search over the region in which the light could be hidden by something at the map's least depth. The
+       frustum keeps distant blockers beside the light's cone from widening the shadows of near ones.
     2. Penumbra w = (d_receiver - d_blocker) / d_blocker · light_size, depths being linear along the light's axis
        (w = (d_receiver - d_blocker) · 2 tan(light_size / 2) for an orthographic map).
     3. Percentage-closer filtering over w.
@@ -727,13 +735,16 @@ def pcss(
         sides = 2.0 * math.tan(sides[0] / 2.0), 2.0 * math.tan(sides[1] / 2.0)
     if kernel is None:
         kernel = "box" if max(shadow_map.light_size) > 0.0 else "vogel"
-    search = _taps("blocker_samples", kernel, blocker_samples, seed)
+    frustum = _arrays.choice("search", search, ("frustum", "region")) == "frustum"
+    blockers = _taps("blocker_samples", kernel, blocker_samples, seed)
     filtered = _taps("filter_samples", kernel, filter_samples, seed)
     shape, points, n = _receivers(shadow_map, receivers, normals)
     result, flat = _result(out, shape, points.dtype)
     more = [np.empty_like(flat) for _ in range(3)] if full_output else None
     geometry = shadow_map._geometry()
-    _kernels.pcss(shadow_map.depth, geometry, perspective, points, n, sides, search, filtered, granted, flat, more)
+    _kernels.pcss(
+        shadow_map.depth, geometry, perspective, points, n, sides, blockers, frustum, filtered, granted, flat, more
+    )
     return result if more is None else PCSS(result, *(a.reshape(shape) for a in more))
 
 
@@ -788,8 +799,8 @@ def ray_traced(
     -----
     Tends to the exact fraction as `samples` grows: the error of a penumbra falls about as samples^(-3/4), since a
     shadow edge across the stratified light is all that varies. With normals the estimate is a ratio of two sums, whose
-    bias falls as 1 / samples; it is exact, without noise, where the light is wholly seen or hidden. Surfaces nearer to the
-    light than 1e-4 of the distance hide nothing. Cost: `samples` shadow rays.
+    bias falls as 1 / samples; it is exact, without noise, where the light is wholly seen or hidden. Surfaces nearer to
+    the light than 1e-4 of the distance hide nothing. Cost: `samples` shadow rays.
 
     References
     ----------

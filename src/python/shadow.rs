@@ -156,6 +156,7 @@ pub mod shadow {
         normals: Option<&Bound<'_, PyAny>>,
         light: [f64; 2],
         search: Taps<'_>,
+        frustum: bool,
         filter: Taps<'_>,
         granted: Granted,
         out: &Bound<'_, PyAny>,
@@ -175,7 +176,7 @@ pub mod shadow {
                 None => None,
             };
             let (search, filter) = (pattern(search)?, pattern(filter)?);
-            let knobs = Knobs { light: light.map(T::of), search: &search, filter: &filter, bias: bias(granted) };
+            let knobs = Knobs { light: light.map(T::of), search: &search, frustum, filter: &filter, bias: bias(granted) };
             let map = map(&depth, &geometry)?;
             let (p, n) = (points.items()?, normals.as_ref().map(In::items).transpose()?);
             let out = out.slice()?;

@@ -1,7 +1,8 @@
 //! Percentage-closer soft shadows: a penumbra as wide as similar triangles between light, blocker and receiver make it.
 //!
 //! 1. Blocker search: the mean depth of the texels that block, over the region of the map through which the receiver
-//!    could see the light past something at the map's least depth.
+//!    could see the light past something at the map's least depth; of these, with a frustum search, the ones that
+//!    lie between the receiver and the light.
 //! 2. Penumbra: w = (d_receiver − d_blocker) / d_blocker · light size, depths being linear along the light's axis.
 //! 3. Percentage-closer filtering over w, brought back into the map.
 //!
@@ -11,7 +12,7 @@
 
 use crate::dispatch;
 use crate::parallel::{self, Interrupted, Watch};
-use crate::real::Real;
+use crate::real::{Lanes, Real};
 use crate::shadow::lookup::{Anchor, Bias, Map, all, at};
 use crate::shadow::pattern::{Pattern, Turn};
 use crate::shadow::pcf::lit_fraction;
@@ -22,6 +23,8 @@ use crate::simd::*;
 pub struct Knobs<'a, T> {
     pub light: [T; 2],
     pub search: &'a Pattern<T>,
+    /// Whether only what lies in the frustum from the receiver to the light counts as a blocker.
+    pub frustum: bool,
     pub filter: &'a Pattern<T>,
     pub bias: Bias<T>,
 }
@@ -99,7 +102,7 @@ fn receiver<T: Real, S: Simd, const PERSPECTIVE: bool>(
     let half = [half[0].min(limit), half[1].min(limit)];
     let search = half[0].max(half[1]);
     let turn = knobs.search.turn(index, 0);
-    let (count, blocker) = mean_blocker::<T, S, PERSPECTIVE>(s, map, a, knobs.search, turn, half);
+    let (count, blocker) = mean_blocker::<T, S, PERSPECTIVE>(s, map, a, knobs, turn, half);
     if count == 0 {
         return Found { lit: T::one(), blocker: T::NAN, penumbra: T::zero(), search };
     }
@@ -133,10 +136,11 @@ fn mean_blocker<T: Real, S: Simd, const PERSPECTIVE: bool>(
     s: S,
     map: &Map<'_, T>,
     a: &Anchor<T>,
-    pattern: &Pattern<T>,
+    knobs: &Knobs<'_, T>,
     turn: Turn<T>,
     half: [T; 2],
 ) -> (u32, T) {
+    let pattern = knobs.search;
     let mut count = 0;
     // One sum a lane, so that its order is the same at every SIMD level.
     let mut sums = all::<T, S>(s, T::zero());
@@ -144,6 +148,11 @@ fn mean_blocker<T: Real, S: Simd, const PERSPECTIVE: bool>(
         let offsets = pattern.offsets(s, block, turn, half);
         let (depth, blocked) = map.taps::<S, PERSPECTIVE, true>(s, a, offsets);
         let active = pattern.active(block);
+        let blocked = if knobs.frustum {
+            blocked & in_frustum::<T, S, PERSPECTIVE>(s, map, a, knobs.light, offsets, depth)
+        } else {
+            blocked
+        };
         let blocked = blocked & <<T::V8<S> as SimdBase<S>>::Mask as SimdMask<S>>::from_bitmask(s, active);
         count += blocked.to_bitmask().count_ones();
         sums = sums + blocked.select(depth, all::<T, S>(s, T::zero()));
@@ -153,4 +162,22 @@ fn mean_blocker<T: Real, S: Simd, const PERSPECTIVE: bool>(
         sum += lane;
     }
     (count, sum / T::of(f64::from(count)))
+}
+
+/// Whether texels at offsets and depths lie between the receiver and the light's sides, by half a texel at least.
+#[inline(always)]
+fn in_frustum<T: Real, S: Simd, const PERSPECTIVE: bool>(
+    s: S,
+    map: &Map<'_, T>,
+    a: &Anchor<T>,
+    light: [T; 2],
+    (ox, oy): (T::V8<S>, T::V8<S>),
+    depth: T::V8<S>,
+) -> <T::V8<S> as SimdBase<S>>::Mask {
+    let half = T::of(0.5);
+    let (one, receiver) = (all::<T, S>(s, T::one()), all::<T, S>(s, a.depth));
+    let reach = if PERSPECTIVE { one / depth - one / receiver } else { receiver - depth };
+    let wide = reach * all::<T, S>(s, light[0] * map.scale[0] * half) + all::<T, S>(s, half);
+    let high = reach * all::<T, S>(s, light[1] * map.scale[1] * half) + all::<T, S>(s, half);
+    Lanes::abs(ox).simd_le(wide) & Lanes::abs(oy).simd_le(high)
 }

@@ -106,10 +106,14 @@ def test_the_search_region_is_the_lights_image_at_the_least_depth(scenes):
 def test_blockers_at_two_depths_count_as_one_at_their_mean(scenes):
     depth = np.where(np.indices((256, 256)).sum(0) % 2, 1.0, 2.0)
     m = sl.shadow.ShadowMap(depth, "perspective", [0, 4, 0], [[1, 0, 0], [0, 0, -1], [0, -1, 0]], [-1, 1, -1, 1], 1, 2)
-    found = sl.shadow.pcss(m, [[0.0, 0, 0]], UP, light_size=0.4, blocker_samples=4096, full_output=True)
+    knobs = {"light_size": 0.4, "blocker_samples": 4096, "full_output": True}
+    found = sl.shadow.pcss(m, [[0.0, 0, 0]], UP, search="region", **knobs)
     assert found.blocker_depth[0] == pytest.approx(1.5, abs=0.02)
     assert found.penumbra[0] == pytest.approx((4 - 1.5) / 1.5 * 0.4, rel=0.03)
     assert found.lit[0] == 0
+    # At depth 2 only a third of the region's side lies between receiver and light: (1/2 - 1/4) / (1 - 1/4).
+    found = sl.shadow.pcss(m, [[0.0, 0, 0]], UP, search="frustum", **knobs)
+    assert found.blocker_depth[0] == pytest.approx((1 + 2 / 9) / (1 + 1 / 9), abs=0.02)
 
 
 def test_shadows_harden_at_contact(scenes):
