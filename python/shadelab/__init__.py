@@ -26,7 +26,9 @@ scene
 raster
     The pipeline: coverage, depth, interpolation, G-buffer.
 shadow
-    Shadow maps and their filters.
+    Shadow maps and their filters, and shadows by rays.
+renderer
+    The shortest list of passes for a scene, and its picture: `plan` and `render`.
 study
     What each technique costs and what it loses: questions, fronts, reports, stability.
 """
@@ -35,8 +37,9 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, Any
 
-from . import accel, brdf, color, geometry, image, light, mesh, raster, sampling, scene, shadow, transform
+from . import accel, brdf, color, geometry, image, light, mesh, raster, renderer, sampling, scene, shadow, transform
 from ._runtime import set_threads, simd, simd_level, simd_levels, threads
+from .renderer import plan, render
 from .scene import load
 
 if TYPE_CHECKING:
@@ -51,7 +54,10 @@ __all__ = [
     "light",
     "load",
     "mesh",
+    "plan",
     "raster",
+    "render",
+    "renderer",
     "sampling",
     "scene",
     "set_threads",

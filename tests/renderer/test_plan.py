@@ -1,0 +1,170 @@
+"""Plans: no pass without need, every pass with a reason, and what a study measured where there is one."""
+
+from types import SimpleNamespace
+
+import numpy as np
+import pytest
+import shadelab as sl
+from shadelab.light import DirectionalLight, PointLight, RectLight
+from shadelab.scene import Camera, Instance, Material, Scene
+
+CAMERA = Camera((3, 3, 6), (0, 0.5, 0))
+GROUND = Instance(sl.mesh.plane(8.0))
+BOX = Instance(sl.mesh.box(), sl.transform.translate([0, 1.0, 0]))
+AREA = RectLight(center=(0, 4, 0), edge_u=(1, 0, 0), edge_v=(0, 0, 1), radiance=(9, 9, 9))
+
+
+def names(plan):
+    return [p.name for p in plan.passes]
+
+
+def why_not(plan, name):
+    return next(x.reason for x in plan.left_out if x.name == name)
+
+
+def test_an_area_light_over_a_box_needs_a_soft_shadow():
+    plan = sl.plan(Scene([GROUND, BOX], AREA, CAMERA))
+    assert names(plan) == ["g-buffer", "shadow map", "shadow", "direct light"]
+    assert plan.find("shadow").settings["technique"] == "pcss"
+    assert why_not(plan, "ambient") == "the background is black"
+    assert why_not(plan, "emission") == "no material shines"
+    assert "display" in why_not(plan, "tone map")
+    assert all(p.reason for p in plan.passes)
+
+
+@pytest.mark.parametrize("lamp", [PointLight((0, 8, 0), (9, 9, 9)), DirectionalLight((0, -1, 0), (1, 1, 1))])
+def test_no_area_light_no_penumbra(lamp):
+    plan = sl.plan(Scene([GROUND, BOX], lamp, CAMERA))
+    assert plan.find("shadow").settings["technique"] == "hard"
+    assert "no area light" in why_not(plan, "penumbra")
+
+
+def test_a_light_that_faces_away_gets_no_map():
+    away = RectLight(center=(0, 4, 0), edge_u=(0, 0, 1), edge_v=(1, 0, 0), radiance=(9, 9, 9))
+    plan = sl.plan(Scene([GROUND, BOX], [AREA, away], CAMERA))
+    assert names(plan) == ["g-buffer", "shadow map 0", "shadow 0", "direct light"]
+    assert why_not(plan, "shadow map 1") == "it faces away from every surface"
+    assert plan.find("direct light").settings["lights"] == (0,)
+
+
+def test_a_black_light_gets_nothing():
+    plan = sl.plan(Scene([GROUND, BOX], PointLight((0, 8, 0), (0, 0, 0)), CAMERA))
+    assert names(plan) == ["g-buffer"] and why_not(plan, "direct light") == "it emits nothing"
+
+
+@pytest.mark.parametrize(
+    ("things", "reason"),
+    [
+        ([GROUND], "one plane"),
+        ([BOX], "convex"),
+        ([Instance(sl.mesh.icosphere(3), sl.transform.translate([0, 1, 0]))], "convex"),
+    ],
+)
+def test_nothing_in_shadow_range_no_shadow_pass(things, reason):
+    plan = sl.plan(Scene(things, AREA, CAMERA))
+    assert names(plan) == ["g-buffer", "direct light"] and reason in why_not(plan, "shadow")
+
+
+@pytest.mark.parametrize(
+    "things",
+    [
+        [Instance(sl.mesh.torus(), sl.transform.translate([0, 1, 0]))],
+        [BOX, Instance(sl.mesh.box(0.3), sl.transform.translate([0, 2.5, 0]))],
+    ],
+)
+def test_what_can_shade_itself_keeps_its_shadow(things):
+    assert sl.plan(Scene(things, AREA, CAMERA)).find("shadow") is not None
+
+
+def test_inside_a_convex_body_its_walls_stand_before_the_light():
+    room = Scene(Instance(sl.mesh.box(2.0)), AREA, Camera((0, 0, 0.5), (0, 0, 0)))
+    assert sl.plan(room).find("shadow") is not None
+
+
+def test_a_penumbra_narrower_than_a_pixel_is_hard():
+    small = RectLight(center=(0, 4, 0), edge_u=(1e-4, 0, 0), edge_v=(0, 0, 1e-4), radiance=(9, 9, 9))
+    scene = Scene([GROUND, BOX], small, Camera((0, 40, 80), (0, 0.5, 0)))
+    plan = sl.plan(scene)
+    assert plan.find("shadow").settings == {"technique": "hard"}
+    assert "narrower than a pixel" in why_not(plan, "penumbra")
+    # With enough pixels it is worth its pass.
+    assert sl.plan(scene, (16384, 16384)).find("shadow").settings["technique"] == "hard"
+    wider = RectLight(center=(0, 4, 0), edge_u=(0.05, 0, 0), edge_v=(0, 0, 0.05), radiance=(9, 9, 9))
+    close = Scene([GROUND, BOX], wider, Camera((0, 40, 80), (0, 0.5, 0)))
+    assert sl.plan(close, (64, 36)).find("shadow").settings["technique"] == "hard"
+    assert sl.plan(close, (7680, 4320)).find("shadow").settings["technique"] == "pcss"
+
+
+def test_a_point_light_within_the_scene_is_traced():
+    plan = sl.plan(Scene([GROUND, BOX], PointLight((1, 1, 0), (9, 9, 9)), CAMERA))
+    assert names(plan) == ["g-buffer", "bvh", "shadow", "direct light"]
+    assert plan.find("shadow").settings == {"technique": "ray_traced", "samples": 1}
+    assert why_not(plan, "shadow map") == "rays need none"
+
+
+def test_a_light_to_both_sides_is_traced():
+    both = RectLight(center=(0, 1.7, 0), edge_u=(1, 0, 0), edge_v=(0, 0, 1), radiance=(9, 9, 9), two_sided=True)
+    lid = Instance(sl.mesh.box((2, 0.1, 2)), sl.transform.translate([0, 3, 0]))
+    plan = sl.plan(Scene([GROUND, BOX, lid], both, CAMERA))
+    assert plan.find("shadow").settings["technique"] == "ray_traced"
+
+
+def test_background_and_emission_get_passes_where_there_are_any():
+    glow = Instance(sl.mesh.box(), sl.transform.translate([0, 1.0, 0]), Material(emission=(1, 0, 0)))
+    plan = sl.plan(Scene([GROUND, glow], (), CAMERA, background=(0.1, 0.1, 0.1)))
+    assert names(plan) == ["g-buffer", "ambient", "emission"]
+    assert why_not(plan, "direct light") == "the scene has no lights"
+
+
+def test_an_empty_scene_is_its_background():
+    plan = sl.plan(Scene([], AREA, CAMERA))
+    assert names(plan) == ["background"]
+
+
+class Study:
+    """What a study hands over."""
+
+    def __init__(self, technique, **knobs):
+        self.choice = SimpleNamespace(technique=technique, knobs=knobs, error=0.013, ms=7.5)
+        self.asked = None
+
+    def pick(self, **bounds):
+        self.asked = bounds
+        return self.choice
+
+
+def test_evidence_chooses_technique_and_knobs():
+    scene = Scene([GROUND, BOX], AREA, CAMERA)
+    study = Study("pcf", resolution=512, samples=64, radius=8.0)
+    plan = sl.plan(scene, evidence=study, max_error=0.02)
+    assert study.asked == {"max_error": 0.02}
+    assert plan.find("shadow map").settings == {"resolution": 512}
+    assert plan.find("shadow").settings == {"technique": "pcf", "samples": 64, "radius": 8.0}
+    assert "0.013" in plan.find("shadow").reason and "7.5 ms" in plan.find("shadow").reason
+    plan = sl.plan(scene, evidence=Study("ray_traced", samples=4), budget_ms=16)
+    assert names(plan) == ["g-buffer", "bvh", "shadow", "direct light"]
+    # Necessity comes first: what needs no penumbra is not given one.
+    hard = sl.plan(Scene([GROUND, BOX], PointLight((0, 8, 0)), CAMERA), evidence=study, max_error=0.02)
+    assert hard.find("shadow").settings["technique"] == "hard"
+
+
+def test_bounds_and_evidence_belong_together():
+    scene = Scene([GROUND, BOX], AREA, CAMERA)
+    with pytest.raises(ValueError, match="evidence: expected the result of a study"):
+        sl.plan(scene, max_error=0.02)
+    with pytest.raises(ValueError, match="evidence: expected max_error or budget_ms"):
+        sl.plan(scene, evidence=Study("hard"))
+    with pytest.raises(ValueError, match="evidence: expected a technique"):
+        sl.plan(scene, evidence=Study("magic"), max_error=0.02)
+    with pytest.raises(ValueError, match="size"):
+        sl.plan(scene, (0, 10))
+
+
+def test_prints_and_shows_itself():
+    plan = sl.plan(Scene([GROUND, BOX], AREA, CAMERA))
+    text, table = str(plan), plan._repr_html_()
+    for p in plan.passes:
+        assert p.name in text and p.reason in text and f"<td>{p.name}</td>" in table
+    for x in plan.left_out:
+        assert f"left out: {x.reason}" in text and f"left out: {x.reason}" in table
+    assert np.all([line == line.rstrip() for line in text.splitlines()])
