@@ -134,7 +134,7 @@ def _contact(dtype: np.dtype) -> Measurement:
 
 
 @extreme(
-    "shadow.pcss", "penumbra by similar triangles", domain="blockers at 2^-10 to 1 - 2^-10 of 4", unit="ulp", claim=3
+    "shadow.pcss", "penumbra by similar triangles", domain="blockers at 2^-10 to 1 - 2^-10 of 4", unit="ulp", claim=8
 )
 def _penumbra(dtype: np.dtype) -> Measurement:
     worst = 0.0
@@ -147,7 +147,7 @@ def _penumbra(dtype: np.dtype) -> Measurement:
     return Measurement(worst, len(depths))
 
 
-@extreme("shadow.ray_traced", "tiny and huge scenes", domain="scales of 1e-6 to 1e6", unit="absolute", claim=0.008)
+@extreme("shadow.ray_traced", "tiny and huge scenes", domain="scales of 1e-6 to 1e6", unit="absolute", claim=0.002)
 def _scales(dtype: np.dtype) -> Measurement:
     worst, cases = 0.0, 0
     for scale in (1e-6, 1e-3, 1.0, 1e3, 1e6):
