@@ -1,0 +1,117 @@
+"""Models from files: geometry, transforms, normals and base colours as trimesh wrote them; broken files in one line."""
+
+import numpy as np
+import pytest
+import shadelab as sl
+import trimesh
+from shadelab.scene import load, load_mesh
+
+
+@pytest.fixture
+def ball():
+    return trimesh.creation.icosphere(2)
+
+
+@pytest.mark.parametrize("suffix", ["obj", "ply", "stl", "glb", "gltf"])
+def test_every_format_gives_the_same_solid(ball, suffix, tmp_path):
+    path = tmp_path / f"ball.{suffix}"
+    ball.export(path)
+    m = load_mesh(path)
+    t = trimesh.Trimesh(m.positions, m.faces)
+    assert t.is_watertight and len(m.faces) == len(ball.faces)
+    assert t.volume == pytest.approx(ball.volume, rel=1e-5)  # formats hold single precision or seven digits
+    assert np.abs(np.linalg.norm(m.normals, axis=-1) - 1).max() < 1e-12
+    # Smooth, also where the format (STL) repeats a vertex for each face.
+    assert (np.einsum("ij,ij->i", m.normals, m.positions) > 0.99).all()
+
+
+def test_nodes_of_a_scene_graph_are_instances_with_transforms_and_materials(tmp_path):
+    graph = trimesh.Scene()
+    part = trimesh.creation.box()
+    part.visual = trimesh.visual.TextureVisuals(
+        material=trimesh.visual.material.PBRMaterial(
+            name="paint", baseColorFactor=[0.5, 0.25, 0.125, 1.0], metallicFactor=0.75, roughnessFactor=0.25
+        )
+    )
+    for x in (0.0, 3.0):
+        matrix = trimesh.transformations.translation_matrix([x, 1, 0])
+        graph.add_geometry(part, geom_name="part", node_name=f"at {x}", transform=matrix)
+    graph.export(tmp_path / "two.glb")
+    scene = load(tmp_path / "two.glb", stage=False)
+    assert sorted(i.transform[0, 3] for i in scene.instances) == [0, 3]
+    material = scene.instances[0].materials[0]
+    assert material.name == "paint" and (material.metallic, material.roughness) == (0.75, 0.25)
+    assert np.abs(np.subtract(material.base_color, (0.5, 0.25, 0.125))).max() < 1 / 255
+
+
+@pytest.mark.parametrize(("suffix", "linear"), [("ply", False), ("glb", True)])
+def test_vertex_colours_become_linear_base_colours(ball, suffix, linear, tmp_path):
+    codes = np.random.default_rng(1).integers(0, 256, (len(ball.vertices), 4)).astype(np.uint8)
+    codes[:, 3] = 255
+    ball.visual = trimesh.visual.ColorVisuals(ball, vertex_colors=codes)
+    ball.export(tmp_path / f"ball.{suffix}")
+    m = load_mesh(tmp_path / f"ball.{suffix}")
+    stored = codes[:, :3] / 255
+    expected = stored if linear else sl.color.decode_transfer(stored)
+    assert np.abs(m.colors - expected).max() < 1e-6
+
+
+def test_textures_are_taken_at_the_vertices_with_the_origin_at_the_bottom_left(tmp_path):
+    from PIL import Image
+
+    pixels = np.zeros((64, 64, 3), np.uint8)
+    pixels[:32] = 255  # the top half
+    uv = np.array([[0.5, 0.25], [0.5, 0.75], [0.25, 0.75]])
+    m = trimesh.Trimesh([[0, 0, 0], [1, 0, 0], [0, 1, 0]], [[0, 1, 2]], process=False)
+    m.visual = trimesh.visual.TextureVisuals(
+        uv=uv, material=trimesh.visual.material.PBRMaterial(baseColorTexture=Image.fromarray(pixels))
+    )
+    m.export(tmp_path / "t.glb")
+    got = load_mesh(tmp_path / "t.glb")
+    assert np.allclose(got.uvs, uv, atol=1e-6)
+    assert np.array_equal(got.colors[:, 0], [0, 1, 1])
+
+
+def test_creases_stay_sharp_where_the_file_has_no_normals(tmp_path):
+    trimesh.creation.box().export(tmp_path / "box.obj", include_normals=False)
+    m = load_mesh(tmp_path / "box.obj")
+    assert np.abs(np.abs(m.normals).max(-1) - 1)[np.unique(m.faces)].max() < 1e-12  # each along an axis
+
+
+def test_a_model_is_set_on_the_ground_under_a_light(ball, tmp_path):
+    ball.apply_translation([5, 7, -3])
+    ball.export(tmp_path / "ball.ply")
+    scene = load(tmp_path / "ball.ply")
+    model, ground = scene.instances
+    assert ground.world().bounds[:, 1] == pytest.approx(model.world().bounds[0, 1])
+    light = scene.lights[0]
+    toward = np.subtract([5, 7, -3], light.center)
+    normal = np.cross(light.edge_u, light.edge_v)
+    assert np.dot(normal, toward) == pytest.approx(np.linalg.norm(normal) * np.linalg.norm(toward))
+    origins, directions = scene.camera.rays((21, 21))
+    flat = scene.flatten(np.float64)
+    hit = sl.accel.BVH(flat.positions, flat.faces).closest_hit(origins[10, 10], directions[10, 10])
+    assert 0 <= hit.face < len(ball.faces)
+
+
+@pytest.mark.parametrize(
+    ("name", "content", "error", "match"),
+    [
+        ("none.obj", None, FileNotFoundError, "none.obj: no such file"),
+        ("model.step", b"", ValueError, "unknown format '.step'"),
+        ("empty.obj", b"", ValueError, "empty.obj"),
+        ("empty.ply", b"", ValueError, "empty.ply: cannot be read as PLY"),
+        ("noise.glb", b"\x00\x01\x02noise", ValueError, "noise.glb: cannot be read as GLB"),
+        ("noise.stl", b"\xff" * 200, ValueError, "noise.stl"),
+        ("points.obj", b"v 0 0 0\nv 1 0 0\n", ValueError, "points.obj"),
+        ("index.obj", b"v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 9\n", ValueError, "index.obj"),
+        ("nan.obj", b"v 0 0 0\nv nan 0 0\nv 0 1 0\nf 1 2 3\n", ValueError, "nan.obj"),
+        ("broken.gltf", b"{", ValueError, "broken.gltf: cannot be read as GLTF"),
+    ],
+)
+def test_what_is_no_model_gives_one_clear_line(name, content, error, match, tmp_path):
+    if content is not None:
+        (tmp_path / name).write_bytes(content)
+    with pytest.raises(error, match=match) as caught:
+        load(tmp_path / name)
+    assert "\n" not in str(caught.value)
