@@ -32,3 +32,72 @@ fn fill<T: Send>(
         }
     })
 }
+
+#[cfg(test)]
+mod tests {
+    //! Against glam, in double precision, and in single against our own double.
+
+    use super::*;
+    use crate::real::Real;
+    use crate::vec::Vec3;
+    use glam::dcamera::rh::{proj::directx, proj::opengl, view::look_at_mat4};
+    use glam::{DMat4, DVec3};
+    use projection::{Depth, Frustum};
+
+    /// Numbers in [-1, 1) from a linear congruence.
+    fn numbers() -> impl FnMut() -> f64 {
+        let mut state = 1u64;
+        move || {
+            state = state.wrapping_mul(6364136223846793005).wrapping_add(1442695040888963407);
+            (state >> 11) as f64 / (1u64 << 52) as f64 - 1.0
+        }
+    }
+
+    fn distance<T: Real>(ours: Rows4<T>, theirs: DMat4) -> f64 {
+        let theirs = theirs.transpose().to_cols_array_2d();
+        let pairs = ours.as_flattened().iter().zip(theirs.as_flattened());
+        pairs.map(|(a, b)| (a.to_f64() - b).abs() / b.abs().max(1.0)).fold(0.0, f64::max)
+    }
+
+    fn agree<T: Real>() {
+        let mut next = numbers();
+        let tolerance = 64.0 * T::EPSILON.to_f64();
+        for _ in 0..1000 {
+            let mut v = || DVec3::new(next(), next(), next()) + DVec3::splat(0.01);
+            let (eye, target, up) = (v(), v(), v());
+            let t = |v: DVec3| Vec3::from(v.to_array().map(T::of));
+            // Single precision has the arguments' own rounding, which a slanted up magnifies.
+            let sine = up.normalize().cross((eye - target).normalize()).length() * (eye - target).length();
+            let theirs = look_at_mat4(eye, target, up);
+            assert!(distance(view::look_at(t(eye), t(target), t(up)), theirs) < tolerance / sine);
+
+            let angle = 3.0 * next();
+            let theirs = DMat4::from_axis_angle(up.normalize(), angle);
+            assert!(distance(affine::rotate_axis(t(up), T::of(angle)), theirs) < tolerance / up.length());
+
+            let (fov, aspect) = (1.5 + next(), 1.5 + next());
+            let (near, far) = (0.6 + 0.5 * next(), 30.0 + 10.0 * next());
+            let frustum = Frustum::from_fov(T::of(fov), T::of(aspect), T::of(near), T::of(far));
+            for (depth, theirs) in [
+                (Depth::Standard, opengl::perspective(fov, aspect, near, far)),
+                (Depth::ZeroToOne, directx::perspective(fov, aspect, near, far)),
+                (Depth::Reversed, directx::perspective(fov, aspect, far, near)),
+            ] {
+                assert!(distance(projection::perspective(frustum, depth), theirs) < tolerance);
+            }
+            let open = Frustum::from_fov(T::of(fov), T::of(aspect), T::of(near), T::INFINITY);
+            let theirs = directx::perspective_infinite_reverse(fov, aspect, near);
+            assert!(distance(projection::perspective(open, Depth::Reversed), theirs) < tolerance);
+            let planes = [-1.0 + 0.5 * next(), 1.0, -1.0, 1.5 + next(), near, far];
+            let ours = projection::orthographic(Frustum(planes.map(T::of)), Depth::Standard);
+            let [l, r, b, t, n, f] = planes;
+            assert!(distance(ours, opengl::orthographic(l, r, b, t, n, f)) < tolerance);
+        }
+    }
+
+    #[test]
+    fn matrices_are_glams() {
+        agree::<f32>();
+        agree::<f64>();
+    }
+}

@@ -66,7 +66,8 @@ def extreme(
 ) -> Callable[[Callable[[np.dtype], Measurement]], Callable[[np.dtype], Measurement]]:
     """Register a function `(dtype) -> Measurement` as an extreme of `kernel` ("chapter.function").
 
-    `unit` is "ulp", "relative", "absolute" or "count" (of wrong answers, where the claim is 0 as a rule).
+    `unit` is "ulp", "eps" (absolute, in rounding units of the precision), "relative", "absolute" or "count" (of wrong
+    answers, where the claim is 0 as a rule).
     """
     claims = dict(claim) if isinstance(claim, Mapping) else {"float32": claim, "float64": claim}
 
