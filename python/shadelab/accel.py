@@ -272,12 +272,13 @@ def offset_ray(
 
     Notes
     -----
-    In the promoted precision of points, normals and directions. The distance is proven for the watertight test, from
-    the round-off of interpolation, move and test (the derivation heads the kernel): a ray that leaves to its side
-    never meets the face that it starts on, nor neighbours in its plane. That takes normals right to a tenth
-    or so: on needles whose computed normal is not, use `ignore_face`. Points taken as
-    `origin + t * direction` instead are off by about a machine epsilon of the ray's length, which the bound does not hold. What touches the surface within the
-    distance (a box standing on a plane) may be passed by: the price of every offset. About 5 ns a point and thread.
+    In the promoted precision of points, normals and directions. The distance is proven for the watertight test,
+    from the round-off of interpolation, move and test (the derivation heads the kernel): a ray that leaves to its
+    side never meets the face that it starts on, nor neighbours in its plane. That takes normals right to a tenth or
+    so: on needles whose computed normal is not, use `ignore_face`. Points taken as `origin + t * direction` instead
+    are off by about a machine epsilon of the ray's length, which the bound does not hold. What touches the surface
+    within the distance (a box standing on a plane) may be passed by: the price of every offset. About 5 ns a point
+    and thread.
 
     References
     ----------

@@ -104,9 +104,11 @@ def ray_triangle(
 
     Notes
     -----
-    Computed in the promoted precision of rays and triangles. Borders count as inside; triangles without area, and
-    such as hold the ray in their plane, are missed. NaN or infinity in a ray or a triangle, or a direction of
-    no length, gives NaN at that element. Directions of any normal length are as good as unit ones.
+    Computed in the promoted precision of rays and triangles. Borders count as inside; rays in the triangle's plane
+    miss, and so do rays at triangles without area, unless they pass within round-off of them. NaN or infinity in a
+    ray or a triangle, or a direction of no length, gives NaN at that element. Directions of any normal length are
+    as good as unit ones. On triangles of good shape, met at 30 degrees or more, `t` is right to 5 machine epsilons
+    of the distance.
 
     *watertight* decides by the exact sign of its edge functions on vertices that are off by at most
     `3.5 eps (|a - o|)`, alike for every triangle that shares them: rays at edges and vertices of a closed mesh always

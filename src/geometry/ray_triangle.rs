@@ -10,7 +10,8 @@
 //! - [`Method::Plane`]: the point where the ray meets the plane, then its barycentrics in the coordinate plane that
 //!   the normal is steepest to. D. Badouel, *An Efficient Ray-Polygon Intersection*, Graphics Gems, 1990.
 //!
-//! Degenerate triangles are missed. Nothing is fused: a fused edge function would break the antisymmetry.
+//! Triangles without area are missed, unless a ray passes within round-off of them. Nothing is fused: a fused edge
+//! function would break the antisymmetry.
 
 use crate::dispatch;
 use crate::parallel::{self, Interrupted, Watch};
