@@ -107,38 +107,53 @@ impl<T: Real> Bvh<T> {
         })
     }
 
+    // The four queries below serve other kernels from inside their dispatch. Each enters the level anew rather than
+    // being inlined there, so that traversal is compiled once a level and precision, not once a caller.
+
     /// The nearest hit of one ray, inside a dispatch.
-    #[inline(always)]
+    #[inline(never)]
     pub fn closest_hit<S: Simd>(&self, s: S, ray: &Ray<T>) -> Hit<T> {
-        match ray::ready(&self.bounds, ray) {
-            None => Hit::no_ray(),
-            Some((ready, heading)) => {
-                ready.finish(single::trace::<false, T, S>(s, self, &ready, heading, ray.ignore_face))
-            }
-        }
+        s.vectorize(
+            #[inline(always)]
+            || match ray::ready(&self.bounds, ray) {
+                None => Hit::no_ray(),
+                Some((ready, heading)) => {
+                    ready.finish(single::trace::<false, T, S>(s, self, &ready, heading, ray.ignore_face))
+                }
+            },
+        )
     }
 
     /// Whether anything is hit.
-    #[inline(always)]
+    #[inline(never)]
     pub fn any_hit<S: Simd>(&self, s: S, ray: &Ray<T>) -> bool {
-        match ray::ready(&self.bounds, ray) {
-            None => false,
-            Some((ready, heading)) => {
-                single::trace::<true, T, S>(s, self, &ready, heading, ray.ignore_face).is_hit()
-            }
-        }
+        s.vectorize(
+            #[inline(always)]
+            || match ray::ready(&self.bounds, ray) {
+                None => false,
+                Some((ready, heading)) => {
+                    single::trace::<true, T, S>(s, self, &ready, heading, ray.ignore_face).is_hit()
+                }
+            },
+        )
     }
 
     /// The nearest hits of a batch, which should hold at least some hundred rays.
-    #[inline(always)]
+    #[inline(never)]
     pub fn closest_hits<S: Simd>(&self, s: S, rays: &[Ray<T>], hits: &mut [Hit<T>]) {
-        self.trace_batch::<false, S>(s, rays.len(), |i| rays[i], |i, hit| hits[i] = hit);
+        s.vectorize(
+            #[inline(always)]
+            || self.trace_batch::<false, S>(s, rays.len(), |i| rays[i], |i, hit| hits[i] = hit),
+        )
     }
 
     /// Whether each ray of a batch hits anything.
-    #[inline(always)]
+    #[inline(never)]
     pub fn any_hits<S: Simd>(&self, s: S, rays: &[Ray<T>], hits: &mut [bool]) {
-        self.trace_batch::<true, S>(s, rays.len(), |i| rays[i], |i, hit| hits[i] = hit.is_hit());
+        s.vectorize(
+            #[inline(always)]
+            || self.trace_batch::<true, S>(s, rays.len(), |i| rays[i], |i, hit| hits[i] = hit.is_hit()),
+        )
     }
 
     /// Hands every ray's hit to `answer`, in whatever order: runs of rays that go alike are traced as packets, the
