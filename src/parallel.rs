@@ -79,6 +79,11 @@ pub fn pool() -> Arc<ThreadPool> {
 
 /// Runs `task(0) … task(tasks - 1)` on the pool, each once. Results must not depend on which thread takes a task.
 pub fn run(watch: &mut dyn Watch, tasks: usize, task: impl Fn(usize) + Sync) -> Result<(), Interrupted> {
+    // Through a pointer: the pool's code is compiled once, and each kernel in its own chapter's unit.
+    run_tasks(watch, tasks, &task)
+}
+
+fn run_tasks(watch: &mut dyn Watch, tasks: usize, task: &(dyn Fn(usize) + Sync)) -> Result<(), Interrupted> {
     // One piece is not worth waking a thread for; and on a thread of the pool, waiting for the others could
     // wait for itself.
     if tasks <= 1 || rayon::current_thread_index().is_some() {
@@ -132,6 +137,11 @@ pub fn run_forking<R: Send>(
     work: impl FnOnce(&AtomicBool) -> R + Send,
 ) -> Result<R, Interrupted> {
     let stop = AtomicBool::new(false);
+    // As in `run`: a thread of the pool that waited could wait for itself.
+    if rayon::current_thread_index().is_some() {
+        let result = work(&stop);
+        return finish(watch.tick(1, 1)).map(|()| result);
+    }
     let (busy, finished) = (Mutex::new(1usize), Condvar::new());
     let mut result = None;
     let mut verdict = ControlFlow::Continue(());
@@ -272,6 +282,7 @@ pub fn for_each<P: Pieces>(
     if left > 0 {
         pieces.push(Mutex::new(Some(rest.cut(left).0)));
     }
+    let f: &(dyn Fn(usize, P) + Sync) = &f;
     run(watch, pieces.len(), |i| {
         let piece = pieces[i].lock().unwrap_or_else(PoisonError::into_inner).take();
         f(i * size, piece.expect("each piece is claimed once"));

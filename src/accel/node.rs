@@ -1,6 +1,6 @@
 //! The layout of the tree: nodes of eight boxes, leaves of blocks of four triangles, and the traversal stack.
 
-use crate::real::Real;
+use crate::real::{Lanes, Real};
 use std::mem::MaybeUninit;
 
 /// The width of a node.
@@ -115,8 +115,8 @@ impl Entry {
 /// An integer in the order of `t`, from zero on. Rounding to single precision keeps the order, as ties.
 #[inline(always)]
 pub fn key<T: Real>(t: T) -> u32 {
-    let t = t.to_f64() as f32;
-    if t > 0.0 { t.to_bits() } else { 0 }
+    // Clamped first, so that single precision never leaves its registers for double.
+    (Lanes::max(t, T::zero()).to_f64() as f32).to_bits()
 }
 
 /// Children that wait, the nearest on top.
