@@ -30,6 +30,8 @@ pub struct Map<'a, T> {
     corner: [T; 2],
     /// Texels per unit of the window.
     pub scale: [T; 2],
+    /// The window's units per texel.
+    texel: [T; 2],
     /// The least depth of anything that casts a shadow.
     pub near: T,
 }
@@ -55,8 +57,19 @@ impl<'a, T: Real> Map<'a, T> {
             return None;
         }
         let scale = [T::of(width as f64) / (right - left), T::of(height as f64) / (top - bottom)];
+        let texel = [(right - left) / T::of(width as f64), (top - bottom) / T::of(height as f64)];
         let frame = frame.map(Vec3::from);
-        Some(Map { depth, width, height, origin: origin.into(), frame, corner: [left, top], scale, near })
+        Some(Map {
+            depth,
+            width,
+            height,
+            origin: origin.into(),
+            frame,
+            corner: [left, top],
+            scale,
+            texel,
+            near,
+        })
     }
 
     /// The larger side of the map in texels.
@@ -108,6 +121,8 @@ pub struct Anchor<T> {
     pub depth: T,
     /// The plane at (x, y): its reciprocal depth (perspective) or its depth less the bias (orthographic).
     key: T,
+    /// The plane at the centre of texel (0, 0).
+    base: T,
     /// Change of the plane per texel.
     gx: T,
     gy: T,
@@ -135,7 +150,7 @@ impl<T: Real> Map<'_, T> {
         if let Some(n) = n
             && bias.normal_offset > zero
         {
-            let texel = one / self.scale[0].min(self.scale[1]);
+            let texel = self.texel[0].max(self.texel[1]);
             let (texel, cosine) =
                 if PERSPECTIVE { (texel * q.z, -n.dot(q) / q.length()) } else { (texel, -n.z) };
             q = q + n * (bias.normal_offset * texel * (one - cosine * cosine).max(zero).sqrt());
@@ -156,10 +171,9 @@ impl<T: Real> Map<'_, T> {
         let (mut gx, mut gy) = (zero, zero);
         if let Some(n) = n {
             let facing = if PERSPECTIVE { n.dot(q) } else { -n.z };
-            if PERSPECTIVE && facing < zero {
-                (gx, gy) = (n.x / facing / self.scale[0], -n.y / facing / self.scale[1]);
-            } else if !PERSPECTIVE && facing > zero {
-                (gx, gy) = (n.x / facing / self.scale[0], -n.y / facing / self.scale[1]);
+            if (PERSPECTIVE && facing < zero) || (!PERSPECTIVE && facing > zero) {
+                let per = one / facing;
+                (gx, gy) = (n.x * per * self.texel[0], -n.y * per * self.texel[1]);
             }
         }
         let steep = gx.abs() + gy.abs();
@@ -168,13 +182,14 @@ impl<T: Real> Map<'_, T> {
         }
         // A few roundings of the depth itself are granted always.
         let rounding = T::of(16.0) * T::EPSILON;
-        Ok(if PERSPECTIVE {
-            let limit = one - rounding - bias.constant * inverse - bias.slope * steep * q.z;
-            Anchor { x, y, depth: q.z, key: inverse, gx, gy, limit }
+        let (key, limit) = if PERSPECTIVE {
+            (inverse, one - rounding - bias.constant * inverse - bias.slope * steep * q.z)
         } else {
-            let grant = rounding * q.z.abs() + bias.constant + bias.slope * steep;
-            Anchor { x, y, depth: q.z, key: q.z - grant, gx, gy, limit: one }
-        })
+            (q.z - (rounding * q.z.abs() + bias.constant + bias.slope * steep), one)
+        };
+        let half = T::of(0.5);
+        let base = key + gx * (half - x) + gy * (half - y);
+        Ok(Anchor { x, y, depth: q.z, key, base, gx, gy, limit })
     }
 
     /// Depths of the texels at offsets (in texels) from a receiver, and a bit for each that blocks it.
@@ -192,10 +207,7 @@ impl<T: Real> Map<'_, T> {
 
         // The receiver's plane at the texel's centre, where its depth was taken.
         let (fx, fy) = (SimdFloat::floor(x + ox), SimdFloat::floor(y + oy));
-        let half = all::<T, S>(s, T::of(0.5));
-        let plane = all::<T, S>(s, a.key)
-            + all::<T, S>(s, a.gx) * (fx + half - x)
-            + all::<T, S>(s, a.gy) * (fy + half - y);
+        let plane = all::<T, S>(s, a.base) + all::<T, S>(s, a.gx) * fx + all::<T, S>(s, a.gy) * fy;
         // Where the plane's horizon is passed, it counts as far away.
         let plane = match (PERSPECTIVE, NEARER) {
             (true, true) => Lanes::max(plane, all::<T, S>(s, a.key)),
@@ -232,8 +244,7 @@ impl<T: Real> Map<'_, T> {
         if !(fx >= T::zero() && fy >= T::zero() && fx < size[0] && fy < size[1]) {
             return false;
         }
-        let half = T::of(0.5);
-        let plane = a.key + a.gx * (fx + half - a.x) + a.gy * (fy + half - a.y);
+        let plane = a.base + a.gx * fx + a.gy * fy;
         let depth = self.depth[fy.to_f64() as usize * self.width + fx.to_f64() as usize];
         if PERSPECTIVE { depth * plane.max(a.key * T::of(1e-3)) < a.limit } else { depth < plane }
     }

@@ -174,10 +174,18 @@ fn in_frustum<T: Real, S: Simd, const PERSPECTIVE: bool>(
     (ox, oy): (T::V8<S>, T::V8<S>),
     depth: T::V8<S>,
 ) -> <T::V8<S> as SimdBase<S>>::Mask {
+    // |o| <= (1/z - 1/d) c + 1/2, or (d - z) c + 1/2, without a division: z is positive, and infinite only where nothing
+    // blocks.
     let half = T::of(0.5);
-    let (one, receiver) = (all::<T, S>(s, T::one()), all::<T, S>(s, a.depth));
-    let reach = if PERSPECTIVE { one / depth - one / receiver } else { receiver - depth };
-    let wide = reach * all::<T, S>(s, light[0] * map.scale[0] * half) + all::<T, S>(s, half);
-    let high = reach * all::<T, S>(s, light[1] * map.scale[1] * half) + all::<T, S>(s, half);
-    Lanes::abs(ox).simd_le(wide) & Lanes::abs(oy).simd_le(high)
+    let (cx, cy) = (light[0] * map.scale[0] * half, light[1] * map.scale[1] * half);
+    let (ox, oy) = (Lanes::abs(ox), Lanes::abs(oy));
+    if PERSPECTIVE {
+        let (kx, ky) = (cx / a.depth - half, cy / a.depth - half);
+        ((ox + all::<T, S>(s, kx)) * depth).simd_le(all::<T, S>(s, cx))
+            & ((oy + all::<T, S>(s, ky)) * depth).simd_le(all::<T, S>(s, cy))
+    } else {
+        let (kx, ky) = (cx * a.depth + half, cy * a.depth + half);
+        (ox + depth * all::<T, S>(s, cx)).simd_le(all::<T, S>(s, kx))
+            & (oy + depth * all::<T, S>(s, cy)).simd_le(all::<T, S>(s, ky))
+    }
 }
