@@ -186,12 +186,24 @@ class BVH:
         out: NDArray[np.bool_] | None = None,
         progress: Progress = None,
     ) -> NDArray[np.bool_]:
-        """Whether each ray hits anything: what shadows ask. Parameters, errors and domain as in `closest_hit`.
+        """Whether each ray hits anything: what shadows ask.
+
+        Parameters
+        ----------
+        origins, directions, t_min, t_max, ignore_face, progress
+            As for `closest_hit`.
+        out : ndarray of bool, optional
+            Array to write into, of the batch's shape.
 
         Returns
         -------
         ndarray of bool, of the batch's shape
             Equal to `closest_hit(...).face >= 0`, and found faster; False where there is no ray.
+
+        Raises
+        ------
+        TypeError, ValueError
+            As `closest_hit` does.
         """
         shape, rays = self._rays(origins, directions, t_min, t_max, ignore_face)
         result = _arrays.output("out", out, shape, np.bool_)
@@ -215,7 +227,22 @@ def brute_force(
 ) -> Hit:
     """Test every ray against every triangle: what each structure must return, to the bit.
 
-    Parameters are those of `BVH` and `BVH.closest_hit`, and so are errors and the result.
+    Parameters
+    ----------
+    positions, faces : array_like, shapes (V, 3) and (F, 3)
+        The mesh, as for `BVH`; the vertices' dtype governs.
+    origins, directions, t_min, t_max, ignore_face, progress
+        The rays, as for `BVH.closest_hit`.
+
+    Returns
+    -------
+    Hit
+        Arrays of the batch's shape, without normals.
+
+    Raises
+    ------
+    TypeError, ValueError
+        As `BVH` and `BVH.closest_hit` do.
 
     Notes
     -----
