@@ -25,6 +25,8 @@ scene
     Scenes, cameras, materials, instances; loading and saving.
 raster
     The pipeline: coverage, depth, interpolation, G-buffer.
+pathtrace
+    Ray casting, direct light, path tracing: the references.
 shadow
     Shadow maps and their filters, and shadows by rays.
 renderer
@@ -37,7 +39,22 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, Any
 
-from . import accel, brdf, color, geometry, image, light, mesh, raster, renderer, sampling, scene, shadow, transform
+from . import (
+    accel,
+    brdf,
+    color,
+    geometry,
+    image,
+    light,
+    mesh,
+    pathtrace,
+    raster,
+    renderer,
+    sampling,
+    scene,
+    shadow,
+    transform,
+)
 from ._runtime import set_threads, simd, simd_level, simd_levels, threads
 from .renderer import plan, render
 from .scene import load
@@ -54,6 +71,7 @@ __all__ = [
     "light",
     "load",
     "mesh",
+    "pathtrace",
     "plan",
     "raster",
     "render",

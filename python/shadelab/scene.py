@@ -62,6 +62,8 @@ class Material:
     emission : three floats
         Radiance that the surface gives off, in W/(m² sr).
     name : str
+    specular : float in [0, 1]
+        Strength of the dielectric's mirrors; 0 leaves Lambert's diffuser.
 
     Raises
     ------
@@ -79,12 +81,14 @@ class Material:
     roughness: float = 0.5
     emission: Vector = (0.0, 0.0, 0.0)
     name: str = ""
+    specular: float = 1.0
 
     def __post_init__(self) -> None:
         set_ = object.__setattr__
         set_(self, "base_color", _triple("base_color", self.base_color, 0, 1))
         set_(self, "metallic", _arrays.number("metallic", self.metallic, 0, 1))
         set_(self, "roughness", _arrays.number("roughness", self.roughness, 0, 1))
+        set_(self, "specular", _arrays.number("specular", self.specular, 0, 1))
         set_(self, "emission", _triple("emission", self.emission, 0))
 
 
@@ -255,6 +259,8 @@ class SceneArrays(NamedTuple):
     """(M,)"""
     emission: Floats
     """(M, 3)"""
+    specular: Floats
+    """(M,)"""
 
 
 @dataclass(frozen=True, eq=False)
@@ -368,6 +374,7 @@ class Scene:
             np.array([m.metallic for m in materials], dtype),
             np.array([m.roughness for m in materials], dtype),
             np.array([m.emission for m in materials], dtype),
+            np.array([m.specular for m in materials], dtype),
         )
 
 

@@ -93,7 +93,9 @@ pub fn prepare<V: Lanes>(
         let pad = one.num(4.0) * eps * (reach[k] + reach[order[2]]) + eps * o[k].abs() + smallest;
         let pad = if heading.negative[k] == 1 { -pad } else { pad };
         (near[k], far[k]) = (o[k] + pad, o[k] - pad);
-        inverse[k] = one / d[k].abs().max(smallest).copysign(d[k]);
+        // The heading's sign, which -0 and what underflows share.
+        let steep = one / d[k].abs().max(smallest);
+        inverse[k] = if heading.negative[k] == 1 { -steep } else { steep };
     }
 
     let q = inverse[order[2]];

@@ -123,3 +123,14 @@ def test_out_is_written_and_normals_follow_the_winding():
     assert np.array_equal(first.normal, [[0, 0, 1], [np.nan] * 3], equal_nan=True)
     again = bvh.closest_hit([[0.5, 0.5, 1], [5, 5, 5]], [0, 0, -1], normals=True, out=first)
     assert again.t is first.t and first.t[0] == 1
+
+
+@pytest.mark.parametrize("dtype", [np.float32, np.float64])
+def test_negative_zero_is_a_direction_like_zero(dtype):
+    corners = np.array([[-9, 1, -9], [0, 1, -9], [0, 1, 9], [-9, 1, 9]], dtype)
+    tree = sl.accel.BVH(corners, [[0, 1, 2], [0, 2, 3]])
+    tiny = np.finfo(dtype).smallest_subnormal
+    sides = np.array([[x, 1.0, z] for x in (0.0, -0.0, tiny, -tiny) for z in (0.0, -0.0, tiny, -tiny)], dtype)
+    origin = np.array([-0.5, 0, 0.25], dtype)
+    assert tree.any_hit(origin, sides).all() and np.array_equal(tree.closest_hit(origin, sides).t, np.ones(16))
+    assert np.array_equal(tree.closest_hit(origin + np.array([0, 2, 0], dtype), -sides).face >= 0, np.ones(16, bool))

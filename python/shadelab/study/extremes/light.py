@@ -130,7 +130,7 @@ def _edge_on(dtype: np.dtype) -> Measurement:
 def _grazing(dtype: np.dtype) -> Measurement:
     cosine = np.array([1, 0.5, 1e-3, 1e-7, 0], dtype)
     wo = np.stack([np.sqrt(1 - cosine**2), cosine, 0 * cosine], -1)[:, None]
-    lights = [
+    lights: list[light.Light] = [
         PointLight((-5, 1e-6, 0)),
         DirectionalLight((1, -1e-7, 0)),
         RectLight((-1, 0, 0), (0, 2, 0), (0, 0, 2)),
