@@ -25,7 +25,7 @@ __all__ = ["Cost", "PCSS", "ShadowMap", "cost", "hard", "pcf", "pcss", "ray_trac
 Kernel: TypeAlias = Literal["vogel", "box", "grid"]
 Cull: TypeAlias = Literal["none", "back", "front"]
 Light: TypeAlias = DirectionalLight | PointLight | RectLight
-Search: TypeAlias = Literal["frustum", "region"]
+Search: TypeAlias = Literal["region", "frustum"]
 _KERNELS = ("vogel", "box", "grid")
 _MAX_RESOLUTION = 16384
 _MAX_SAMPLES = 4096
@@ -653,7 +653,7 @@ def pcss(
     light_size: float | tuple[float, float] | None = None,
     blocker_samples: int = 16,
     filter_samples: int = 32,
-    search: Search = "frustum",
+    search: Search = "region",
     kernel: Kernel | None = None,
     seed: int | None = 0,
     bias: float = 0.0,
@@ -674,9 +674,9 @@ def pcss(
         default. For an orthographic map the angle in radians that the light spans (0.0093 for the sun).
     blocker_samples, filter_samples : int
         Texels read to find the blockers' mean depth, and to filter; at most 4096 each.
-    search : {"frustum", "region"}
-        What counts as a blocker: what lies between the receiver and the light, or, as first published, all that blocks
-        in the region of the map that the light could be hidden in.
+    search : {"region", "frustum"}
+        What counts as a blocker: as first published, all that blocks in the region of the map that the light could be
+        hidden in; or of that only what lies between the receiver and the light, which wants many `blocker_samples`.
     kernel : {"vogel", "box", "grid"}, optional
         As in `pcf`; "box" is the shape of a rectangular light and the default for it, "vogel" that of a disk.
     seed, bias, slope_bias, normal_offset, receiver_plane
@@ -698,8 +698,10 @@ def pcss(
 
     Notes
     -----
-    1. Blocker search over the region in which the light could be hidden by something at the map's least depth. The
-       frustum keeps distant blockers beside the light's cone from widening the shadows of near ones.
+    1. Blocker search over the region in which the light could be hidden by something at the map's least depth. A
+       caster close to the light makes it wide: then few samples fall near the receiver, distant blockers beside the
+       light's cone widen the shadows of near ones, and thin contact shadows fade. The frustum search leaves distant
+       blockers out, but with few samples finds none at all, and light leaks.
     2. Penumbra w = (d_receiver - d_blocker) / d_blocker · light_size, depths being linear along the light's axis
        (w = (d_receiver - d_blocker) · 2 tan(light_size / 2) for an orthographic map).
     3. Percentage-closer filtering over w.
@@ -735,7 +737,7 @@ def pcss(
         sides = 2.0 * math.tan(sides[0] / 2.0), 2.0 * math.tan(sides[1] / 2.0)
     if kernel is None:
         kernel = "box" if max(shadow_map.light_size) > 0.0 else "vogel"
-    frustum = _arrays.choice("search", search, ("frustum", "region")) == "frustum"
+    frustum = _arrays.choice("search", search, ("region", "frustum")) == "frustum"
     blockers = _taps("blocker_samples", kernel, blocker_samples, seed)
     filtered = _taps("filter_samples", kernel, filter_samples, seed)
     shape, points, n = _receivers(shadow_map, receivers, normals)

@@ -81,6 +81,7 @@ impl<'a, T: Real> Map<'a, T> {
 
 /// The normal of receiver `i`, where there are any.
 #[inline(always)]
+#[allow(clippy::manual_map)] // A closure would not be compiled for the level unless inlined.
 pub fn at<T: Real>(normals: Option<&[[T; 3]]>, i: usize) -> Option<[T; 3]> {
     match normals {
         Some(n) => Some(n[i]),
@@ -141,6 +142,7 @@ impl<T: Real> Map<'_, T> {
     ) -> Result<Anchor<T>, T> {
         let (zero, one) = (T::zero(), T::one());
         let mut q = into_frame(self.frame, Vec3::from(point) - self.origin);
+        #[allow(clippy::manual_map)] // As in `at`.
         let n = match normal {
             Some(n) => Some(into_frame(self.frame, n.into())),
             None => None,

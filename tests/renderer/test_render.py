@@ -66,6 +66,22 @@ def test_shadowed_light_is_about_that_of_rays(frame):
     assert (frame.lit[0] < 0.05).any() and ((frame.lit[0] > 0.2) & (frame.lit[0] < 0.8)).any()
 
 
+def test_soft_shadows_of_the_default_scene_are_about_those_of_rays():
+    # Casters near and far from the light: a blocker search that misses some leaks light into the umbrae.
+    scene, size = sl.scene.default(), (320, 180)
+    soft = sl.render(scene, size=size)
+    assert soft.plan.find("shadow").settings["technique"] == "pcss"
+    kept = [p for p in soft.plan.passes if not p.name.startswith("shadow")]
+    rays = sl.renderer.Pass("shadow", "the reference", {"technique": "ray_traced", "samples": 64})
+    kept[1:1] = [sl.renderer.Pass("bvh", "for rays"), rays]
+    exact = sl.render(scene, sl.renderer.Plan(tuple(kept), (), size))
+    seen = soft.face >= 0
+    apart = np.abs(soft.lit[0] - exact.lit[0])[seen]
+    assert apart.mean() < 0.03
+    dark = exact.lit[0][seen] == 0
+    assert dark.mean() > 0.02 and soft.lit[0][seen][dark].mean() < 0.03
+
+
 def test_every_pass_is_timed_and_reported():
     told = []
     f = sl.render(
