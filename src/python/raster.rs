@@ -5,7 +5,9 @@ use pyo3::prelude::*;
 pub mod raster {
     use crate::parallel::{self, Interrupted, Watch};
     use crate::python::array::{In, Out, run};
-    use crate::raster::{self as kernels, Cull, Depth, Options, Shading, Visibility};
+    use crate::raster::{
+        self as kernels, Attributes, Cull, Depth, GBuffer, Options, Seen, Shading, Surface, View, Visibility,
+    };
     use crate::real;
     use crate::real::Real;
     use crate::vec::Mat4;
@@ -148,6 +150,103 @@ pub mod raster {
                     })
                 }
             }
+        })
+    }
+
+    /// Refuses faces of a raster outside `[-1, count)`, naming the first.
+    fn check_seen(py: Python<'_>, seen: &[i32], count: usize) -> PyResult<()> {
+        let bad = |f: &i32| *f < -1 || i64::from(*f) >= count as i64;
+        match py.detach(|| seen.iter().position(bad)) {
+            None => Ok(()),
+            Some(i) => Err(PyValueError::new_err(format!(
+                "raster: face {} at element {i} is out of range [-1, {count})",
+                seen[i]
+            ))),
+        }
+    }
+
+    #[pyfunction]
+    #[pyo3(signature = (attributes, faces, seen, out, slopes=None))]
+    fn interpolate(
+        py: Python<'_>,
+        attributes: (Bound<'_, PyAny>, usize),
+        faces: &Bound<'_, PyAny>,
+        seen: (Bound<'_, PyAny>, Bound<'_, PyAny>, Bound<'_, PyAny>),
+        out: &Bound<'_, PyAny>,
+        slopes: Option<(Bound<'_, PyAny>, (usize, usize, usize), Bound<'_, PyAny>, Bound<'_, PyAny>)>,
+    ) -> PyResult<()> {
+        let (attributes, channels) = attributes;
+        let faces = In::<i32>::of("faces", faces)?;
+        let face = In::<i32>::of("raster.face", &seen.0)?;
+        real!(&attributes, T => {
+            let values = In::<T>::of("attributes", &attributes)?;
+            let (u, v) = (In::<T>::of("raster.u", &seen.1)?, In::<T>::of("raster.v", &seen.2)?);
+            let mut out = Out::<T>::of("out", out)?;
+            let (faces, out) = (faces.items()?, out.slice()?);
+            let attributes = Attributes { values: values.slice()?, channels, faces };
+            let seen = Seen { face: face.slice()?, u: u.slice()?, v: v.slice()? };
+            if channels == 0 {
+                return Ok(());
+            }
+            check_indices(py, faces, attributes.values.len() / channels)?;
+            check_seen(py, seen.face, faces.len())?;
+            run(py, None, |watch| kernels::interpolate(watch, attributes, seen, out))?;
+            if let Some((clip, (width, height, samples), dx, dy)) = &slopes {
+                let clip = In::<T>::of("clip", clip)?;
+                let (mut dx, mut dy) = (Out::<T>::of("dx", dx)?, Out::<T>::of("dy", dy)?);
+                let view =
+                    View { clip: clip.items()?, width: *width, height: *height, samples: *samples };
+                let (dx, dy) = (dx.slice()?, dy.slice()?);
+                check_indices(py, faces, view.clip.len())?;
+                run(py, None, |watch| kernels::derivatives(watch, attributes, seen, view, dx, dy))?;
+            }
+            Ok(())
+        })
+    }
+
+    #[pyfunction]
+    fn g_buffer(
+        py: Python<'_>,
+        clip: &Bound<'_, PyAny>,
+        faces: &Bound<'_, PyAny>,
+        surface: (Bound<'_, PyAny>, Option<Bound<'_, PyAny>>, Option<Bound<'_, PyAny>>),
+        size: (usize, usize),
+        samples: usize,
+        cull: &str,
+        depth: &str,
+        out: [Bound<'_, PyAny>; 7],
+    ) -> PyResult<()> {
+        let options = options(size, samples, cull, depth)?;
+        let faces = In::<i32>::of("faces", faces)?;
+        let ids = surface.2.as_ref().map(|ids| In::<i32>::of("material_ids", ids)).transpose()?;
+        let (mut face, mut material) =
+            (Out::<i32>::of("out.face", &out[0])?, Out::<i32>::of("out.material", &out[6])?);
+        real!(clip, T => {
+            let clip = In::<T>::of("clip", clip)?;
+            let positions = In::<T>::of("positions", &surface.0)?;
+            let normals = surface.1.as_ref().map(|n| In::<T>::of("normals", n)).transpose()?;
+            let real = |name, i: usize| Out::<T>::of(name, &out[i]);
+            let (mut u, mut v, mut depth) = (real("out.u", 1)?, real("out.v", 2)?, real("out.depth", 3)?);
+            let (mut position, mut normal) = (real("out.position", 4)?, real("out.normal", 5)?);
+            let (clip, faces) = (clip.items()?, faces.items()?);
+            check_indices(py, faces, clip.len())?;
+            let surface = Surface {
+                positions: positions.items()?,
+                normals: normals.as_ref().map(|n| n.items()).transpose()?,
+                material_ids: ids.as_ref().map(|ids| ids.slice()).transpose()?,
+            };
+            let out = GBuffer {
+                visibility: Visibility {
+                    face: face.slice()?,
+                    u: u.slice()?,
+                    v: v.slice()?,
+                    depth: depth.slice()?,
+                },
+                position: position.items()?,
+                normal: normal.items()?,
+                material: material.slice()?,
+            };
+            run(py, None, |watch| kernels::g_buffer(watch, clip, faces, surface, &options, out))
         })
     }
 }

@@ -5,12 +5,16 @@
 //! visible triangles of a tile into whatever picture is wanted. Nothing depends on the number of threads.
 //!
 //! - [`rasterize`](mod@rasterize): face, barycentrics and depth as pictures; depth alone
+//! - [`interpolate`](mod@interpolate): vertex attributes and their screen derivatives
+//! - [`g_buffer`](mod@g_buffer): position, normal and material beside them, in one pass
 //! - [`render_lambert`](mod@render_lambert): a picture of a matte mesh in one pass
 //!
 //! The parts: `samples` (where the samples of a pixel lie), `clip` (polygons against near, far and guard planes), `setup`
 //! (snapping, edge functions, planes of depth and barycentrics), `bin` (triangles to tiles), `tile` (exact coverage
 //! and depth), `picture` (what tiles write into), `pipeline` (the stages in order).
 
+pub mod g_buffer;
+pub mod interpolate;
 pub mod rasterize;
 pub mod render_lambert;
 
@@ -22,6 +26,8 @@ pub(crate) mod samples;
 pub(crate) mod setup;
 pub(crate) mod tile;
 
+pub use g_buffer::{GBuffer, Surface, g_buffer};
+pub use interpolate::{Attributes, Seen, View, derivatives, interpolate};
 pub use pipeline::Options;
 pub use rasterize::{Visibility, rasterize, rasterize_depth};
 pub use render_lambert::{Shading, render_lambert};

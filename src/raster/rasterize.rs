@@ -24,13 +24,7 @@ pub fn rasterize<T: Real>(
     options: &Options,
     out: Visibility<T>,
 ) -> Result<(), Interrupted> {
-    let (w, h) = (options.width * options.samples, options.height);
-    let resolve = All {
-        face: Picture::new(out.face, w, h),
-        u: Picture::new(out.u, w, h),
-        v: Picture::new(out.v, w, h),
-        depth: DepthOnly { depth: Picture::new(out.depth, w, h) },
-    };
+    let resolve = All::new(out, options);
     draw(watch, clip, faces, options, &resolve)
 }
 
@@ -46,7 +40,7 @@ pub fn rasterize_depth<T: Real>(
     draw(watch, clip, faces, options, &DepthOnly { depth })
 }
 
-struct DepthOnly<'a, T> {
+pub(crate) struct DepthOnly<'a, T> {
     depth: Picture<'a, T>,
 }
 
@@ -67,11 +61,24 @@ impl<T: Real> Resolve<T> for DepthOnly<'_, T> {
     }
 }
 
-struct All<'a, T> {
+/// Writes every picture of a [`Visibility`].
+pub(crate) struct All<'a, T> {
     face: Picture<'a, i32>,
     u: Picture<'a, T>,
     v: Picture<'a, T>,
     depth: DepthOnly<'a, T>,
+}
+
+impl<'a, T> All<'a, T> {
+    pub fn new(out: Visibility<'a, T>, options: &Options) -> Self {
+        let (w, h) = (options.width * options.samples, options.height);
+        All {
+            face: Picture::new(out.face, w, h),
+            u: Picture::new(out.u, w, h),
+            v: Picture::new(out.v, w, h),
+            depth: DepthOnly { depth: Picture::new(out.depth, w, h) },
+        }
+    }
 }
 
 impl<T: Real> Resolve<T> for All<'_, T> {
@@ -86,15 +93,12 @@ impl<T: Real> Resolve<T> for All<'_, T> {
                 (self.face.row(at, row, width), self.u.row(at, row, width), self.v.row(at, row, width))
             };
             for sample in 0..n {
-                let [ox, oy] = tile.offset(sample);
-                let sy = T::of(row as i32 as f64) + oy;
                 for (x, &id) in tile.ids(sample, y).iter().enumerate() {
                     let i = x * n + sample;
                     (face[i], u[i], v[i]) = (-1, T::zero(), T::zero());
                     if id != NONE {
                         let p = &tile.visible[id as usize];
-                        let dx = T::of((tile.x + x) as i32 as f64) + ox - p.reference[0];
-                        let [pu, pv] = p.barycentrics_at(dx, sy - p.reference[1]);
+                        let [pu, pv] = tile.barycentrics(p, sample, x, y);
                         (face[i], u[i], v[i]) = (p.face, pu, pv);
                     }
                 }

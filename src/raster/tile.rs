@@ -90,6 +90,15 @@ impl<T: Real> Tile<T> {
         &self.depth[(sample * TILE + row) * PITCH..][..self.width]
     }
 
+    /// Where on triangle `p` a sample lies.
+    #[inline(always)]
+    pub fn barycentrics(&self, p: &Planes<T>, sample: usize, x: usize, y: usize) -> [T; 2] {
+        let [ox, oy] = self.offset(sample);
+        let dx = T::of((self.x + x) as i32 as f64) + ox - p.reference[0];
+        let dy = T::of((self.y + y) as i32 as f64) + oy - p.reference[1];
+        p.barycentrics_at(dx, dy)
+    }
+
     /// Starts an empty tile.
     fn clear(&mut self, index: usize, scene: &Scene<T>) {
         (self.x, self.y) = (index % scene.grid.columns * TILE, index / scene.grid.columns * TILE);
