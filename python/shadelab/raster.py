@@ -11,7 +11,16 @@ from . import _arrays
 from ._arrays import Floats
 from ._kernels import raster as _kernels
 
-__all__ = ["GBuffer", "Interpolated", "Raster", "g_buffer", "interpolate", "rasterize", "rasterize_depth", "render_lambert"]
+__all__ = [
+    "GBuffer",
+    "Interpolated",
+    "Raster",
+    "g_buffer",
+    "interpolate",
+    "rasterize",
+    "rasterize_depth",
+    "render_lambert",
+]
 
 MAX_SIZE = 16384
 """The largest width and height of a picture, in pixels."""
@@ -283,9 +292,10 @@ def interpolate(
 
     Notes
     -----
-    Derivatives are those of the triangle's own plane, exact rather than differences between neighbouring pixels, so they
-    hold at silhouettes too; `dy` points downwards, as rows do. They grow without bound towards a triangle's horizon, and
-    are zero on triangles that are edge-on to within rounding. Equal attributes give that value to the bit.
+    Derivatives are those of the triangle's own plane, not differences between neighbouring pixels, so they hold at
+    silhouettes too; `dy` points downwards, as rows do. They grow without bound towards a triangle's horizon, and are
+    zero on triangles that are edge-on to within rounding. Attributes that are equal give their value to the bit. Errors
+    are those of `u` and `v` times the attribute's range. Cost: reads 12 (20) bytes a sample, writes C numbers.
 
     References
     ----------
@@ -416,15 +426,17 @@ def g_buffer(
     (width, height), samples = _size(size), _samples(samples)
     modes = _modes(cull, depth)
     shape = (height, width) if samples == 1 else (height, width, samples)
-    result = GBuffer(*(
-        _arrays.output(
-            f"out.{name}",
-            None if out is None else getattr(out, name),
-            (*shape, 3) if name in ("position", "normal") else shape,
-            np.int32 if name in ("face", "material") else dtype,
+    result = GBuffer(
+        *(
+            _arrays.output(
+                f"out.{name}",
+                None if out is None else getattr(out, name),
+                (*shape, 3) if name in ("position", "normal") else shape,
+                np.int32 if name in ("face", "material") else dtype,
+            )
+            for name in GBuffer._fields
         )
-        for name in GBuffer._fields
-    ))
+    )
     _kernels.g_buffer(points, triangles, (world, directions, ids), (width, height), samples, *modes, list(result))
     return result
 

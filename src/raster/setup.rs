@@ -138,8 +138,9 @@ impl<T: Real> Planes<T> {
     #[inline(always)]
     pub fn barycentrics_at(&self, dx: T, dy: T) -> [T; 2] {
         let [l0, l1, l2] = clamped(&self.weights, dx, dy);
-        let r = T::one() / (l0 + l1 + l2);
-        [l1 * r, l2 * r]
+        // Divided one by one: the reciprocal of a sum near the least number would overflow.
+        let sum = l0 + l1 + l2;
+        [l1 / sum, l2 / sum]
     }
 }
 
@@ -174,7 +175,7 @@ pub fn planes_in_lanes<V: Lanes>(
     let like = clip[0][0];
     let (zero, one) = (like.num(0.0), like.num(1.0));
     // A common factor changes neither depth nor weights, and keeps the products in range.
-    let mut largest = zero;
+    let mut largest = like.like(V::Elem::MIN_POSITIVE);
     for i in 0..3 {
         for k in 0..4 {
             largest = largest.max(clip[i][k].abs());
@@ -235,12 +236,14 @@ pub fn planes_in_lanes<V: Lanes>(
 }
 
 impl Planes<f64> {
-    /// Rounded to the precision of the picture.
+    /// Rounded to the precision of the picture; the weights' common factor is chosen such that they fit it.
     pub fn to<T: Real>(self) -> Planes<T> {
+        let largest = self.weights.iter().flatten().fold(f64::MIN_POSITIVE, |m, c| m.max(c.abs()));
+        let weights = self.weights.map(|p| p.map(|c| T::of(c / largest)));
         Planes {
             face: self.face,
             reference: self.reference.map(T::of),
-            weights: self.weights.map(|p| p.map(T::of)),
+            weights,
             depth: self.depth.map(T::of),
             depth_range: self.depth_range.map(T::of),
         }

@@ -62,7 +62,10 @@ def test_out_is_written_and_errors_name_the_argument():
     cases = [
         (lambda: sl.raster.g_buffer(clip, faces, positions[1:], (4, 4)), r"positions: expected shape \(90, 3\)"),
         (lambda: sl.raster.g_buffer(clip, faces, positions, (4, 4), normals=normals[1:]), "normals: expected shape"),
-        (lambda: sl.raster.g_buffer(clip, faces, positions, (4, 4), material_ids=ids[1:]), "material_ids: expected shape"),
+        (
+            lambda: sl.raster.g_buffer(clip, faces, positions, (4, 4), material_ids=ids[1:]),
+            "material_ids: expected shape",
+        ),
         (lambda: sl.raster.g_buffer(clip, faces, positions, (4, 4), out=out), r"out.face: expected shape \(4, 4\)"),
     ]
     for call, message in cases:

@@ -21,9 +21,7 @@ def _to_clip(pixels: NDArray[Any], w: NDArray[Any], size: tuple[int, int] = SIZE
 
 def _owners(clip: NDArray[Any], faces: NDArray[Any], samples: int = 1) -> NDArray[np.int64]:
     """How many of the faces, drawn alone, cover each sample."""
-    return sum(
-        (raster.rasterize(clip, f[None], SIZE, samples).face == 0).astype(np.int64) for f in faces
-    )  # type: ignore[return-value]
+    return sum((raster.rasterize(clip, f[None], SIZE, samples).face == 0).astype(np.int64) for f in faces)
 
 
 @extreme(
@@ -124,7 +122,7 @@ def _exact(clip: NDArray[Any]) -> tuple[NDArray[Any], NDArray[Any], NDArray[Any]
     "barycentrics through the eye's plane",
     domain="triangles from behind the eye to 1000 away, clear of their edges by 1e-3 in u, v",
     unit="absolute",
-    claim={"float32": 2e-5, "float64": 1e-13},
+    claim={"float32": 2e-4, "float64": 1e-12},
 )
 def barycentrics(dtype: np.dtype) -> Measurement:
     """Error of u and v, of triangles that the near plane cuts."""
@@ -147,7 +145,7 @@ def barycentrics(dtype: np.dtype) -> Measurement:
     "depth through the eye's plane",
     domain="triangles from behind the eye to 1000 away, near plane at 0.1, clear of their edges",
     unit="absolute",
-    claim={"float32": 1e-5, "float64": 1e-14},
+    claim={"float32": 1e-6, "float64": 4e-15},
 )
 def depths(dtype: np.dtype) -> Measurement:
     """Error of z / w, of triangles that the near plane cuts."""
@@ -177,12 +175,17 @@ def any_size(dtype: np.dtype) -> Measurement:
     info = np.finfo(dtype)
     n = 20000
     low, high = np.log2(float(info.smallest_subnormal)), np.log2(float(info.max))
-    with np.errstate(over="ignore"):
+    with np.errstate(over="ignore", invalid="ignore"):
         clip = (rng.choice([-1.0, 1.0], (3 * n, 4)) * 2.0 ** rng.uniform(low, high, (3 * n, 4))).astype(dtype)
+        clip[:, 3] = np.abs(clip[:, 3])
+        half = 3 * n // 2
+        within = (rng.uniform(-2, 2, (half, 3)) * clip[:half, 3:].astype(np.longdouble)).astype(dtype)
     special = np.array([0.0, -0.0, np.inf, -np.inf, np.nan, info.max, info.smallest_subnormal], dtype)
     clip = np.where(rng.random(clip.shape) < 0.1, rng.choice(special, clip.shape), clip)
     clip[:, 3] = np.abs(clip[:, 3])
-    clip[: 3 * n // 2, :3] = rng.uniform(-2, 2, (3 * n // 2, 3)) * clip[: 3 * n // 2, 3:]
+    # Half of them about the picture, at any scale.
+    clip[:half, :3] = within
+    clip[:half, 3] = np.abs(clip[:half, 3])
     wrong = covered = 0
     strays = 0
     for k in range(0, n, 100):
