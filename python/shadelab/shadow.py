@@ -701,7 +701,8 @@ def pcss(
     1. Blocker search over the region in which the light could be hidden by something at the map's least depth. A
        caster close to the light makes it wide: then few samples fall near the receiver, distant blockers beside the
        light's cone widen the shadows of near ones, and thin contact shadows fade. The frustum search leaves distant
-       blockers out, but with few samples finds none at all, and light leaks.
+       blockers out, but with few samples often finds none at all. Then
+       the texel under the receiver counts, if it blocks.
     2. Penumbra w = (d_receiver - d_blocker) / d_blocker · light_size, depths being linear along the light's axis
        (w = (d_receiver - d_blocker) · 2 tan(light_size / 2) for an orthographic map).
     3. Percentage-closer filtering over w.
@@ -710,7 +711,7 @@ def pcss(
     light's axis; under a rectangular light with kernel "box" also in profile. Fails where blockers at several depths
     overlap: they count as one at their mean depth, so shadows of the nearer are too sharp and light may leak. What the
     light's centre does not see cannot block. A few blocker samples miss thin blockers. Cost: `blocker_samples` texel
-    reads, and `filter_samples` more where something blocks.
+    reads, and `filter_samples` more where something blocks (one more where the search found nothing).
 
     References
     ----------

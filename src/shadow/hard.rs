@@ -34,7 +34,7 @@ fn body<T: Real, const PERSPECTIVE: bool>(
 ) {
     for i in 0..out.len() {
         out[i] = match map.anchor::<PERSPECTIVE>(points[i], at(normals, i), bias) {
-            Ok(a) if map.blocked_here::<PERSPECTIVE>(&a) => T::zero(),
+            Ok(a) if map.blocker_here::<PERSPECTIVE>(&a).is_some() => T::zero(),
             Ok(_) => T::one(),
             Err(answer) => answer,
         };

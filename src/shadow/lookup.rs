@@ -238,16 +238,18 @@ impl<T: Real> Map<'_, T> {
         (depth, blocked)
     }
 
-    /// Whether the texel under a receiver blocks it: one tap of [`Map::taps`].
+    /// The depth of the texel under a receiver if it blocks: one tap of [`Map::taps`].
     #[inline(always)]
-    pub fn blocked_here<const PERSPECTIVE: bool>(&self, a: &Anchor<T>) -> bool {
+    pub fn blocker_here<const PERSPECTIVE: bool>(&self, a: &Anchor<T>) -> Option<T> {
         let (fx, fy) = (a.x.floor(), a.y.floor());
         let size = [T::of(self.width as f64), T::of(self.height as f64)];
         if !(fx >= T::zero() && fy >= T::zero() && fx < size[0] && fy < size[1]) {
-            return false;
+            return None;
         }
         let plane = a.base + a.gx * fx + a.gy * fy;
         let depth = self.depth[fy.to_f64() as usize * self.width + fx.to_f64() as usize];
-        if PERSPECTIVE { depth * plane.max(a.key * T::of(1e-3)) < a.limit } else { depth < plane }
+        let blocks =
+            if PERSPECTIVE { depth * plane.max(a.key * T::of(1e-3)) < a.limit } else { depth < plane };
+        if blocks { Some(depth) } else { None }
     }
 }

@@ -102,9 +102,13 @@ fn receiver<T: Real, S: Simd, const PERSPECTIVE: bool>(
     let half = [half[0].min(limit), half[1].min(limit)];
     let search = half[0].max(half[1]);
     let turn = knobs.search.turn(index, 0);
-    let (count, blocker) = mean_blocker::<T, S, PERSPECTIVE>(s, map, a, knobs, turn, half);
+    let (count, mut blocker) = mean_blocker::<T, S, PERSPECTIVE>(s, map, a, knobs, turn, half);
     if count == 0 {
-        return Found { lit: T::one(), blocker: T::NAN, penumbra: T::zero(), search };
+        // Few samples of a wide region may all miss what hides the light's centre: then that alone counts.
+        blocker = match map.blocker_here::<PERSPECTIVE>(a) {
+            Some(depth) => depth,
+            None => return Found { lit: T::one(), blocker: T::NAN, penumbra: T::zero(), search },
+        };
     }
 
     // Penumbra by similar triangles, and the filter.
