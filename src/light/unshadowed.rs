@@ -2,7 +2,7 @@
 //!
 //! Punctual lights, and the diffuse part of rectangles with its Fresnel factor, are in closed form (the factor is a
 //! polynomial of the cosine: see [`super::polygon`]). The mirrors' part of a rectangle is an average of `samples` points
-//! of the light and as many directions of the lobe, weighed by the balance heuristic; its error falls
+//! of the light and, unless the lobe is dim beside it, as many directions of the lobe (balance heuristic); its error falls
 //! faster than 1/√samples, since both are scrambled Sobol' points, a scramble of its own for every receiver.
 //!
 //! E. Veach, L. Guibas, *Optimally combining sampling techniques for Monte Carlo rendering*, 1995.
@@ -108,6 +108,18 @@ impl<T: Real> Receiver<T> {
         self.lobes.diffuse.times(rect.radiance) * factor
     }
 
+    /// Whether directions of the mirrors' lobe are worth drawing beside points of the light: unless the lobe is dim
+    /// and wide beside it, so that the balance heuristic would hardly count them. Depends on no sample, hence no bias.
+    #[inline(always)]
+    pub fn lobe_matters(&self, rect: &Rect<T>) -> bool {
+        if !self.lobes.is_specular() || self.wo.z <= T::zero() {
+            return false;
+        }
+        let peak = ggx::ggx_pdf(Vec3::new(-self.wo.x, -self.wo.y, self.wo.z), self.wo, self.lobes.alpha);
+        let half = T::of(0.5);
+        !rect.sample(self.point, [half, half]).is_some_and(|s| peak < T::of(0.25) * s.pdf)
+    }
+
     /// The mirrors' part, by sampling the light and the lobe.
     #[inline(always)]
     fn mirrored_rect(&self, rect: &Rect<T>, stream: u64, seed: u64, digits: &[[u32; 3]]) -> Vec3<T> {
@@ -116,22 +128,24 @@ impl<T: Real> Receiver<T> {
             return none;
         }
         let scramble: [Scramble; 4] = std::array::from_fn(|d| Scramble::new(seed, stream, d as u32));
-        let mut sum = none;
+        let (mut sum, both) = (none, self.lobe_matters(rect));
+        let lobe = |wi| if both { ggx::ggx_pdf(wi, self.wo, self.lobes.alpha) } else { T::zero() };
         for x in digits {
             let sighting = rect.sample(self.point, [scramble[0].fraction(x[0]), scramble[1].fraction(x[1])]);
             if let Some(s) = sighting {
                 let wi = self.frame.local(s.wi);
                 if wi.z > T::zero() {
-                    let weight = wi.z / (s.pdf + ggx::ggx_pdf(wi, self.wo, self.lobes.alpha));
-                    sum = sum + self.lobes.specular(wi, self.wo) * weight;
+                    sum = sum + self.lobes.specular(wi, self.wo) * (wi.z / (s.pdf + lobe(wi)));
                 }
+            }
+            if !both {
+                continue;
             }
             let u = [scramble[2].fraction(x[0]), scramble[3].fraction(x[1])];
             let wi = ggx::ggx_sample(self.wo, u, self.lobes.alpha);
             if wi.z > T::zero() {
                 if let Some(s) = rect.meet(self.point, self.frame.world(wi)) {
-                    let weight = wi.z / (s.pdf + ggx::ggx_pdf(wi, self.wo, self.lobes.alpha));
-                    sum = sum + self.lobes.specular(wi, self.wo) * weight;
+                    sum = sum + self.lobes.specular(wi, self.wo) * (wi.z / (s.pdf + lobe(wi)));
                 }
             }
         }

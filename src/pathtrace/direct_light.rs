@@ -1,7 +1,7 @@
 //! Light from the lights, reflected once, with shadows: the reference of every shadow technique, at given points.
 //!
 //! A punctual light takes one shadow ray. A rectangle takes `samples` points of its area and, where the material has
-//! mirrors, as many directions of their lobe, weighed by the balance heuristic. Both are Owen-scrambled Sobol' points
+//! mirrors whose lobe is bright beside it, as many directions of that, weighed by the balance heuristic. Both are Owen-scrambled Sobol' points
 //! with a scramble of its own for every receiver, so the error at an edge of shadow falls faster than 1/√samples. A
 //! run of samples that goes on where another ended (`start`) extends the same sequence; different seeds are independent.
 //!
@@ -52,14 +52,22 @@ struct Site<T> {
 }
 
 impl<T: Real> Site<T> {
-    /// Adds a ray towards a sighted point if the surface reflects it: `other` is the density of the second strategy.
+    /// Adds a ray towards a sighted point if the surface reflects it; `both`: the lobe is sampled as well as the light.
     #[inline(always)]
-    fn aim(&self, bench: &mut Bench<T>, rect: &Rect<T>, s: &Sighting<T>, wi: Vec3<T>, sample: usize) {
+    fn aim(
+        &self,
+        bench: &mut Bench<T>,
+        rect: &Rect<T>,
+        s: &Sighting<T>,
+        wi: Vec3<T>,
+        sample: usize,
+        both: bool,
+    ) {
         let r = &self.receiver;
         if wi.z <= T::zero() || s.wi.dot(self.normal) <= T::zero() {
             return;
         }
-        let lobe = if r.lobes.is_specular() { ggx::ggx_pdf(wi, r.wo, r.lobes.alpha) } else { T::zero() };
+        let lobe = if both { ggx::ggx_pdf(wi, r.wo, r.lobes.alpha) } else { T::zero() };
         let value = r.lobes.eval(wi, r.wo).times(rect.radiance) * (wi.z / (s.pdf + lobe));
         bench.rays.push(leave(r.point, self.normal, s.wi, self.offset, s.distance));
         bench.carried.push((value, sample));
@@ -77,20 +85,20 @@ impl<T: Real> Site<T> {
         bench: &mut Bench<T>,
     ) -> Tally {
         let (r, mut tally) = (&self.receiver, Tally::default());
-        let mirrors = r.lobes.is_specular();
+        let both = r.lobe_matters(rect);
         for batch in digits.chunks(BATCH) {
             bench.rays.clear();
             bench.carried.clear();
             for (k, x) in batch.iter().enumerate() {
                 let u = [scramble[0].fraction(x[0]), scramble[1].fraction(x[1])];
                 if let Some(sighting) = rect.sample(r.point, u) {
-                    self.aim(bench, rect, &sighting, r.frame.local(sighting.wi), k);
+                    self.aim(bench, rect, &sighting, r.frame.local(sighting.wi), k, both);
                 }
-                if mirrors && r.wo.z > T::zero() {
+                if both {
                     let u = [scramble[2].fraction(x[0]), scramble[3].fraction(x[1])];
                     let wi = ggx::ggx_sample(r.wo, u, r.lobes.alpha);
                     if let Some(sighting) = rect.meet(r.point, r.frame.world(wi)) {
-                        self.aim(bench, rect, &sighting, wi, k);
+                        self.aim(bench, rect, &sighting, wi, k, both);
                     }
                 }
             }
