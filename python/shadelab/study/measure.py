@@ -131,6 +131,7 @@ def run(
         question = find(question)
     if not isinstance(question, Question):
         raise TypeError(f"question: expected a name or a Question, got {type(question).__name__}")
+    candidates = list(candidates)
     plan = _Plan(
         question,
         _settings(question, candidates, techniques),
@@ -190,7 +191,7 @@ def _cases(
         scenes = dict(scene) if isinstance(scene, Mapping) else {"your scene": scene}
     for name, source in scenes.items():
         made = source() if callable(source) else source
-        for view_name, view in (views if views is not None else question.views(made)).items():
+        for view_name, view in (views if views is not None else question.views(name, made)).items():
             yield Case(name, view_name, made, view, size, np.dtype(np.float32), seed)
 
 

@@ -190,7 +190,7 @@ def _case(case: Case) -> Any:
     return case
 
 
-def _one_view(scene: Any) -> Mapping[str, Any]:
+def _one_view(name: str, scene: Any) -> Mapping[str, Any]:
     return {"": None}
 
 
@@ -211,7 +211,7 @@ class Question:
     candidates : sequence of Candidate
         The techniques.
     views : callable
-        `views(scene)` gives the views of a scene by name.
+        `views(name, scene)` gives the views of a scene by name.
     setup : callable
         `setup(case)` makes the inputs that reference and candidates share (a G-buffer); not timed.
     compose : callable
@@ -234,7 +234,7 @@ class Question:
     metric: Metric
     candidates: Sequence[Candidate]
     mask: Mask = Mask()
-    views: Callable[[Any], Mapping[str, Any]] = _one_view
+    views: Callable[[str, Any], Mapping[str, Any]] = _one_view
     setup: Callable[[Case], Any] = _case
     compose: Callable[[Any, Any], Array] = _same
     also: Mapping[str, Callable[[Array, Array, Any], Any]] = field(default_factory=dict)

@@ -122,7 +122,7 @@ class CaseRecord:
         return cls(**given)
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, repr=False)
 class Summary:
     """One setting over all the cases that it was measured in: the worst of each figure, and where.
 
@@ -156,8 +156,12 @@ class Summary:
         """Technique and knobs in one text."""
         return setting_text(self.technique, self.knobs)
 
+    def __repr__(self) -> str:
+        e, t = self.error, self.ms
+        return f"<{self.setting}: error {e.value:.3g} [{e.low:.3g}, {e.high:.3g}], {t.value:.3g} ms>"
 
-@dataclass(frozen=True)
+
+@dataclass(frozen=True, repr=False)
 class Choice:
     """What `pick` chose: technique, knobs, its worst error and time, the metric and mask that this was judged by."""
 
@@ -185,6 +189,9 @@ class Choice:
             f"{self.setting}: error {e.value:.3g} [{e.low:.3g}, {e.high:.3g}], {t.value:.3g} ms "
             f"[{t.low:.3g}, {t.high:.3g}] ({where}; {self.asked}; metric: {self.metric}; mask: {self.mask})"
         )
+
+    def __repr__(self) -> str:
+        return f"<{self}>"
 
 
 class NothingQualifies(ValueError):

@@ -87,6 +87,15 @@ class Study:
         scene, view : str, optional
             Look at one scene or view alone; otherwise each setting counts with its worst over all of them. Settings
             that were not measured in all of these cases (an `External` picture of one view) stand aside.
+
+        Returns
+        -------
+        list of Summary
+
+        Raises
+        ------
+        ValueError
+            If there is no such scene or view.
         """
         part = self.of(scene, view) if scene is not None or view is not None else self
         pooled = [(s, r) for s, r in part._pooled() if s.complete]
@@ -107,6 +116,20 @@ class Study:
 
         A setting keeps the bound if the upper end of the confidence interval of its worst error over scenes and views
         does; likewise with the budget. With both, the cheapest that keeps both.
+
+        Parameters
+        ----------
+        max_error : float, optional
+            The error allowed, in the question's metric.
+        budget_ms : float, optional
+            Milliseconds a frame, preparation included.
+        scene, view : str, optional
+            Look at one scene or view alone.
+
+        Returns
+        -------
+        Choice
+            Technique, knobs, error and milliseconds, with the metric and mask that they were judged by.
 
         Raises
         ------

@@ -11,12 +11,26 @@ __all__ = ["find", "questions"]
 
 
 def questions() -> list[str]:
-    """The names of all questions, as `run` and the command line take them."""
+    """The names of all questions, as `run` and the command line take them.
+
+    Returns
+    -------
+    list of str
+    """
     return sorted(m.name.replace("_", " ") for m in pkgutil.iter_modules(__path__))
 
 
 def find(name: str) -> Question:
-    """A question by its name; spaces, hyphens and underscores are one.
+    """A question by its name.
+
+    Parameters
+    ----------
+    name : str
+        As `questions` has it; hyphens and underscores count as spaces.
+
+    Returns
+    -------
+    Question
 
     Raises
     ------
