@@ -17,7 +17,7 @@ def questions() -> list[str]:
     -------
     list of str
     """
-    return sorted(m.name.replace("_", " ") for m in pkgutil.iter_modules(__path__))
+    return sorted(m.name.replace("_", " ") for m in pkgutil.iter_modules(__path__) if not m.name.startswith("_"))
 
 
 def find(name: str) -> Question:
