@@ -228,3 +228,18 @@ def test_what_has_no_content_is_not_kept():
     assert references.digest(np.arange(3)) != references.digest(np.arange(3.0))
     assert references.digest({"a": (1, 2)}) == references.digest({"a": (1, 2)})
     assert references.digest(lambda x: x + 1) != references.digest(lambda x: x + 2)
+
+
+def test_functions_count_with_what_they_name_and_close_over():
+    def made(n, helper):
+        return lambda x: helper(x) + n
+
+    one, other = (lambda x: x + 1), (lambda x: x + 2)
+    assert references.digest(made(1, one)) == references.digest(made(1, one))
+    assert references.digest(made(1, one)) != references.digest(made(2, one))
+    assert references.digest(made(1, one)) != references.digest(made(1, other))
+    space = {"helper": one}
+    by_name = eval("lambda x: helper(x)", space)
+    before = references.digest(by_name)
+    space["helper"] = other
+    assert before != references.digest(by_name)

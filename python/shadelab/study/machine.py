@@ -42,10 +42,14 @@ def version() -> str:
 
 @functools.cache
 def build() -> str:
-    """A digest of the compiled kernels: two builds with one version number are still two builds."""
+    """A digest of the package, kernels and Python: two builds with one version number are still two builds."""
     from .. import _kernels
 
-    return hashlib.sha256(Path(_kernels.__file__).read_bytes()).hexdigest()[:16]
+    state = hashlib.sha256(Path(_kernels.__file__).read_bytes())
+    package = Path(__file__).resolve().parents[1]
+    for path in sorted(package.rglob("*.py")):
+        state.update(path.relative_to(package).as_posix().encode() + path.read_bytes())
+    return state.hexdigest()[:16]
 
 
 def machine() -> dict[str, Any]:

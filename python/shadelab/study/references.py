@@ -11,6 +11,7 @@ import tempfile
 import time
 import types
 import zipfile
+from collections.abc import Iterable
 from pathlib import Path
 from typing import Any
 
@@ -129,61 +130,78 @@ class _Unknown(Exception):
 
 
 def digest(*things: Any) -> str | None:
-    """A digest of content: numbers, texts, arrays, containers, dataclasses, functions with what they close over.
+    """A digest of content: numbers, texts, arrays, containers, dataclasses, functions with all that they refer to.
 
     None if something in it cannot be told by content; it is then not cached.
     """
-    state = hashlib.sha256()
+    feed = _Feed()
     try:
         for thing in things:
-            _feed(state, thing, 0)
-    except _Unknown:
+            feed(thing)
+    except (_Unknown, RecursionError):
         return None
-    return state.hexdigest()
+    return feed.state.hexdigest()
 
 
-def _feed(state: Any, thing: Any, depth: int) -> None:
-    if depth > 30:
-        raise _Unknown
-    state.update(f"<{type(thing).__module__}.{type(thing).__qualname__}".encode())
-    if thing is None or isinstance(thing, bool | int | float | complex | str | bytes | np.dtype | np.generic | Path):
-        state.update(repr(thing).encode())
-    elif isinstance(thing, np.ndarray):
-        if thing.dtype.kind == "O":
-            raise _Unknown
-        state.update(f"{thing.dtype.str}{thing.shape}".encode())
-        state.update(np.ascontiguousarray(thing).tobytes())
-    elif isinstance(thing, dict | types.MappingProxyType):
-        for key, value in thing.items():
-            _feed(state, key, depth + 1)
-            _feed(state, value, depth + 1)
-    elif isinstance(thing, list | tuple):
-        for value in thing:
-            _feed(state, value, depth + 1)
-    elif dataclasses.is_dataclass(thing) and not isinstance(thing, type):
-        for field in dataclasses.fields(thing):
-            state.update(field.name.encode())
-            _feed(state, getattr(thing, field.name), depth + 1)
-    elif isinstance(thing, types.FunctionType):
-        _feed_code(state, thing.__code__)
-        _feed(state, thing.__defaults__, depth + 1)
-        for cell in thing.__closure__ or ():
-            _feed(state, cell.cell_contents, depth + 1)
-    elif isinstance(thing, types.ModuleType | type | types.BuiltinFunctionType):
-        state.update(f"{thing.__name__}".encode())
-    else:
-        raise _Unknown
-    state.update(b">")
+class _Feed:
+    """Feeds things into a digest; functions once, since they may call each other in circles."""
 
+    def __init__(self) -> None:
+        self.state = hashlib.sha256()
+        self.functions: set[types.FunctionType] = set()
 
-def _feed_code(state: Any, code: types.CodeType) -> None:
-    state.update(code.co_code)
-    state.update(repr(code.co_names).encode())
-    for constant in code.co_consts:
-        if isinstance(constant, types.CodeType):
-            _feed_code(state, constant)
+    def __call__(self, thing: Any) -> None:
+        self.state.update(f"<{type(thing).__module__}.{type(thing).__qualname__}".encode())
+        if thing is None or isinstance(
+            thing, bool | int | float | complex | str | bytes | np.dtype | np.generic | Path
+        ):
+            self.state.update(repr(thing).encode())
+        elif isinstance(thing, np.ndarray):
+            self._array(thing)
+        elif isinstance(thing, dict | types.MappingProxyType):
+            self.each(x for item in thing.items() for x in item)
+        elif isinstance(thing, list | tuple):
+            self.each(thing)
+        elif dataclasses.is_dataclass(thing) and not isinstance(thing, type):
+            self.each((f.name, getattr(thing, f.name)) for f in dataclasses.fields(thing))
+        elif isinstance(thing, types.FunctionType):
+            self._function(thing)
+        elif isinstance(thing, types.ModuleType | type | types.BuiltinFunctionType | np.ufunc):
+            self.state.update(thing.__name__.encode())
         else:
-            state.update(repr(constant).encode())
+            raise _Unknown
+        self.state.update(b">")
+
+    def each(self, things: Iterable[Any]) -> None:
+        for thing in things:
+            self(thing)
+
+    def _array(self, array: NDArray[Any]) -> None:
+        if array.dtype.kind == "O":
+            raise _Unknown
+        self.state.update(f"{array.dtype.str}{array.shape}".encode())
+        self.state.update(np.ascontiguousarray(array).tobytes())
+
+    def _function(self, function: types.FunctionType) -> None:
+        """Its code, its defaults, what it closes over, and the functions and data that it names."""
+        if function in self.functions:
+            return
+        self.functions.add(function)
+        names = self._code(function.__code__)
+        self.each((function.__defaults__, function.__kwdefaults__))
+        self.each(cell.cell_contents for cell in function.__closure__ or ())
+        self.each((n, function.__globals__[n]) for n in sorted(names) if n in function.__globals__)
+
+    def _code(self, code: types.CodeType) -> set[str]:
+        """Feeds code; the names that it and the code within it use are returned."""
+        self.state.update(code.co_code)
+        names = set(code.co_names)
+        for constant in code.co_consts:
+            if isinstance(constant, types.CodeType):
+                names |= self._code(constant)
+            else:
+                self.state.update(repr(constant).encode())
+        return names
 
 
 def key(question: Question, case: Case) -> str | None:

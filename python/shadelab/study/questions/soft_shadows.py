@@ -2,13 +2,14 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
-from ... import color, image, pathtrace, renderer, shadow
+from ... import color, image, light, pathtrace, renderer, shadow
 from ...accel import BVH
 from ..question import Candidate, Case, Mask, Metric, MonteCarlo, Question
 from ._shadow_scenes import SCENES, views
@@ -18,10 +19,274 @@ __all__ = ["question"]
 Array = NDArray[Any]
 
 _MASK_RAYS = 256
-"""Rays that find the penumbrae: one blocked, or one that passes, of these puts a pixel into the mask."""
+"""Rays that find the penumbrae: a pixel of which some of these are blocked and some pass is in the mask."""
 
-_MASK_REACH = 1 / 60
-"""How far the mask reaches beyond penumbrae, in heights of the picture: halos and leaks lie beside them."""
+_MASK_REACH = 60
+"""The mask reaches a 60th of the picture's height beyond penumbrae: halos and leaks lie beside them."""
 
-_LUMINANCE = np.array([0.2126, 0.7152, 0.0722])
-"""Of linear sRGB."""
+
+@dataclass(frozen=True)
+class Inputs:
+    """What reference and candidates are given: the G-buffer at pixel centres, and the scene to cast shadows.
+
+    `covered` marks the pixels that show a surface; the arrays of receivers hold those alone, row by row. All arrays
+    have one precision; those in double are made of the same G-buffer, so that only the techniques differ.
+    """
+
+    lights: Sequence[Any]
+    caster_positions: Array
+    caster_faces: Array
+    bvh: BVH
+    covered: Array
+    points: Array
+    geometric: Array
+    shading: Array
+    base_color: Array
+    eye: Array
+    unshadowed: Array
+    exposure: float
+    seed: int
+
+    def spread(self, values: Array) -> Array:
+        """Values of receivers as a picture, zero where there is no surface."""
+        picture = np.zeros((*self.covered.shape, *values.shape[1:]), values.dtype)
+        picture[self.covered] = values
+        return picture
+
+
+def _setup(case: Case) -> Inputs:
+    """The G-buffer by rays through pixel centres, and the light that would arrive with nothing in between."""
+    arrays = case.scene.flatten(np.float32)
+    camera = case.view if case.view is not None else case.scene.camera
+    origins, directions = camera.rays(case.size, dtype=np.float32)
+    bvh = BVH(arrays.positions, arrays.faces)
+    hit = bvh.closest_hit(origins, directions, normals=True)
+    covered = hit.face >= 0
+    face, u, v = hit.face[covered], hit.u[covered, None], hit.v[covered, None]
+    corners = arrays.faces[face]
+
+    def mixed(values: Array) -> Array:
+        a, b, c = (values[corners[:, i]] for i in range(3))
+        return (1 - u - v) * a + u * b + v * c
+
+    seen = np.broadcast_to(directions, (*covered.shape, 3))[covered]
+    points = mixed(arrays.positions)
+    geometric, shading = hit.normal[covered], mixed(arrays.normals)
+    shading /= np.maximum(np.linalg.norm(shading, axis=-1, keepdims=True), np.finfo(np.float32).tiny)
+    # Both sides of a surface are looked at as its front.
+    geometric = np.where(np.einsum("ij,ij->i", geometric, seen)[:, None] > 0, -geometric, geometric)
+    shading = np.where(np.einsum("ij,ij->i", shading, geometric)[:, None] < 0, -shading, shading)
+    base = arrays.base_color[arrays.material_ids[face]]
+    if arrays.colors is not None:
+        base = base * mixed(arrays.colors)
+    if case.dtype == np.float64:
+        bvh = BVH(arrays.positions.astype(np.float64), arrays.faces)
+    points, geometric, shading, base = (np.ascontiguousarray(a, case.dtype) for a in (points, geometric, shading, base))
+    eye = np.asarray(camera.eye, case.dtype)
+    lights = case.scene.lights
+    unshadowed = np.stack([light.unshadowed(l, points, shading, base, specular=0.0, eye=eye) for l in lights])
+    bright = color.luminance(unshadowed.sum(0))
+    exposure = 0.8 / max(float(np.quantile(bright, 0.98)) if bright.size else 0.0, 1e-6)
+    positions = arrays.positions.astype(case.dtype)
+    return Inputs(
+        lights, positions, arrays.faces, bvh, covered, points, geometric, shading, base, eye, unshadowed, exposure,
+        case.seed,
+    )  # fmt: skip
+
+
+def _estimate(inputs: Inputs, samples: int, seed: int, start: int, where: Array | None) -> Array:
+    """Direct light by the path tracer's estimator at the receivers (of the wanted pixels)."""
+    wanted = slice(None) if where is None else where[inputs.covered]
+    traced = pathtrace.direct_light(
+        inputs.bvh,
+        inputs.points[wanted],
+        inputs.shading[wanted],
+        inputs.lights,
+        inputs.base_color[wanted],
+        specular=0.0,
+        eye=inputs.eye,
+        samples=samples,
+        seed=seed,
+        start=start,
+    )
+    radiance = np.zeros_like(inputs.points)
+    radiance[wanted] = traced.radiance
+    return inputs.spread(radiance)
+
+
+def _compose(inputs: Inputs, lit: Array) -> Array:
+    """Radiance: what would arrive unshadowed, times the lit fraction, light by light."""
+    return inputs.spread(np.einsum("ln,lnc->nc", np.asarray(lit), inputs.unshadowed))
+
+
+def _residual(value: Array, reference: Array, inputs: Inputs) -> Array:
+    """Difference of luminance in units of the unshadowed light; zero where none would arrive."""
+    whole = color.luminance(inputs.spread(inputs.unshadowed.sum(0)))
+    apart = color.luminance(np.asarray(value) - reference)
+    return np.divide(apart, whole, out=np.zeros_like(apart), where=whole > 0)
+
+
+def _penumbrae(reference: Array, inputs: Inputs) -> Array:
+    """Pixels in or beside a penumbra that would get light."""
+    reach = max(1, round(inputs.covered.shape[0] / _MASK_REACH))
+    found = np.zeros(inputs.covered.shape, bool)
+    for source in inputs.lights:
+        lit = shadow.ray_traced(inputs.bvh, inputs.points, inputs.geometric, source, samples=_MASK_RAYS, seed=0)
+        found |= inputs.spread((lit > 0) & (lit < 1))
+    return _widened(found, reach) & (inputs.spread(inputs.unshadowed.sum(0)).sum(-1) > 0)
+
+
+def _widened(mask: Array, reach: int) -> Array:
+    """A mask grown by a square of `reach` pixels to every side: rows first, then columns."""
+    for axis in (0, 1):
+        padded = np.moveaxis(mask, axis, 0)
+        grown = padded.copy()
+        for step in range(1, reach + 1):
+            grown[step:] |= padded[:-step]
+            grown[:-step] |= padded[step:]
+        mask = np.moveaxis(grown, 0, axis)
+    return mask
+
+
+def _maps(inputs: Inputs, resolution: int, **knobs: Any) -> list[Any]:
+    """The shadow map of each light, drawn each frame."""
+    return [
+        shadow.shadow_map(inputs.caster_positions, inputs.caster_faces, l, resolution, receivers=inputs.points)
+        for l in inputs.lights
+    ]
+
+
+def _hard(inputs: Inputs, maps: list[Any], resolution: int) -> Array:
+    return np.stack([shadow.hard(m, inputs.points, inputs.geometric) for m in maps])
+
+
+def _pcf(inputs: Inputs, maps: list[Any], resolution: int, samples: int, radius: float, seed: int) -> Array:
+    each = {"samples": samples, "radius": radius, "seed": seed}
+    return np.stack([shadow.pcf(m, inputs.points, inputs.geometric, **each) for m in maps])
+
+
+def _pcss(
+    inputs: Inputs, maps: list[Any], resolution: int, blocker_samples: int, filter_samples: int, seed: int
+) -> Array:
+    each: dict[str, Any] = {"blocker_samples": blocker_samples, "filter_samples": filter_samples, "seed": seed}
+    return np.stack([shadow.pcss(m, inputs.points, inputs.geometric, **each) for m in maps])
+
+
+def _ray_traced(inputs: Inputs, prepared: None, samples: int, seed: int) -> Array:
+    each = {"samples": samples, "seed": seed}
+    rays = [shadow.ray_traced(inputs.bvh, inputs.points, inputs.geometric, l, **each) for l in inputs.lights]
+    return np.stack(rays)
+
+
+def _counters(technique: str) -> Any:
+    """Texel reads and rays a pixel, and the bytes that stay resident: the maps, or the tree."""
+
+    def count(inputs: Inputs, resolution: int = 0, **knobs: Any) -> dict[str, float]:
+        cost = shadow.cost(technique, itemsize=inputs.points.itemsize, **knobs)
+        lights = len(inputs.lights)
+        resident = lights * resolution**2 * inputs.points.itemsize if resolution else inputs.bvh.stats().bytes
+        return {"taps/px": cost.texel_reads * lights, "rays/px": cost.rays * lights, "bytes": resident}
+
+    return count
+
+
+def _flip(value: Array, reference: Array, inputs: Inputs) -> Array:
+    """LDR-FLIP of the pictures as shown, in [0, 1]: the difference that one sees when flipping between them."""
+    shown = [color.encode_transfer(np.clip(p * inputs.exposure, 0, 1)) for p in (value, reference)]
+    return image.flip_error(*shown, dynamic_range="ldr").map
+
+
+def _rmse(value: Array, reference: Array, inputs: Inputs) -> float:
+    """Root mean square error of radiance over the whole frame, background included, in W/(m² sr)."""
+    return image.rmse(value, reference)
+
+
+def _display(inputs: Inputs, value: Array) -> Array:
+    shown = color.encode_transfer(np.clip(value * inputs.exposure, 0, 1))
+    return (shown * 255 + 0.5).astype(np.uint8)
+
+
+def _area_light(inputs: Inputs) -> str | None:
+    areas = [isinstance(l, light.RectLight) for l in inputs.lights]
+    return None if all(areas) else "it needs area lights, and there are others"
+
+
+_ABOUT = """A point in a penumbra sees a part of the light. How much is an integral over the light; shadow maps replace
+it by a comparison of depths, filters soften that, rays sample it. What does each lose where it matters, in and beside
+penumbrae, and what does a frame cost? Geometry per pixel and unshadowed light are given to all alike and not counted;
+drawing the shadow map is."""
+
+_METRIC_ABOUT = """Root mean square, over the mask, of the difference of direct radiance (as luminance) from the
+reference, divided by the radiance that would be there with nothing in between: 0.02 is 2 % of the unshadowed light. Surfaces
+reflect diffusely alone, since the question is about visibility."""
+
+_MASK_ABOUT = f"""Pixels whose lit fraction is strictly between 0 and 1 (by {_MASK_RAYS} rays), widened by a 60th of the
+picture's height to every side so that halos and leaks beside penumbrae count, where any light would arrive."""
+
+_PCSS_SETTINGS = ((512, 16, 32), (1024, 8, 16), (1024, 16, 32), (1024, 32, 64), (2048, 32, 64))
+
+
+def _candidates() -> list[Candidate]:
+    return [
+        Candidate(
+            "hard",
+            _hard,
+            {"resolution": (512, 1024, 2048)},
+            _maps,
+            _counters("hard"),
+            about="One comparison with a shadow map, the scene seen from each light's centre. No penumbra at all.",
+        ),
+        Candidate(
+            "pcf",
+            _pcf,
+            {"resolution": (1024,), "samples": (16, 64), "radius": (2.0, 8.0, 32.0)},
+            _maps,
+            _counters("pcf"),
+            seeded=True,
+            about="Percentage-closer filtering: the share of texels within a fixed radius (in texels) that do not "
+            "block. One width of penumbra everywhere, so wrong at contact and far from the blocker.",
+        ),
+        Candidate(
+            "pcss",
+            _pcss,
+            [{"resolution": r, "blocker_samples": b, "filter_samples": f} for r, b, f in _PCSS_SETTINGS],
+            _maps,
+            _counters("pcss"),
+            domain=_area_light,
+            seeded=True,
+            about="Percentage-closer soft shadows: filters over the width that the mean depth of the blockers calls "
+            "for. Blockers at several depths count as one; what the light's centre does not see cannot block.",
+        ),
+        Candidate(
+            "ray_traced",
+            _ray_traced,
+            {"samples": (1, 4, 16, 64)},
+            counters=_counters("ray_traced"),
+            seeded=True,
+            about="Rays to points of the light. Unbiased visibility; noise falls with their number. The tree that they "
+            "are traced in is built once for a scene and not counted.",
+        ),
+    ]
+
+
+def question() -> Question:
+    """The question, ready to be run."""
+    return Question(
+        "soft shadows",
+        SCENES,
+        MonteCarlo(_estimate, first=16, most=1 << 14),
+        Metric("rms error of direct light over unshadowed light", _residual, about=_line(_METRIC_ABOUT)),
+        _candidates(),
+        Mask("penumbrae and a 60th of the height around", _penumbrae, _line(_MASK_ABOUT)),
+        views,
+        _setup,
+        _compose,
+        {"FLIP": _flip, "rmse": _rmse},
+        _display,
+        lambda case: renderer.plan(case.scene, size=case.size),
+        about=_line(_ABOUT),
+    )
+
+
+def _line(text: str) -> str:
+    return " ".join(text.split())
