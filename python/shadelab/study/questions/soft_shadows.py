@@ -217,7 +217,8 @@ penumbrae, and what does a frame cost? Geometry per pixel and unshadowed light a
 drawing the shadow map is."""
 
 _METRIC_ABOUT = """Root mean square, over the mask, of the difference of direct radiance (as luminance) from the
-reference, divided by the radiance that would be there with nothing in between: 0.02 is 2 % of the unshadowed light. Surfaces
+reference, divided by the radiance that would be there with nothing in between: 0.02 is 2 % of the unshadowed light.
+Surfaces
 reflect diffusely alone, since the question is about visibility."""
 
 _MASK_ABOUT = f"""Pixels whose lit fraction is strictly between 0 and 1 (by {_MASK_RAYS} rays), widened by a 60th of the
