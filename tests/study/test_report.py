@@ -12,7 +12,7 @@ import toy
 from shadelab import study
 from shadelab.study import report
 
-FAST = {"rounds": 6, "patience": 0.0, "cache": False}
+FAST = {"rounds": 6, "patience": 1.0, "cache": False}
 CHROMIUM = shutil.which("chromium") or shutil.which("chromium-browser") or shutil.which("google-chrome")
 
 
@@ -75,9 +75,9 @@ def test_pictures_and_figures_lie_beside(directory, measured):
 def test_pictures_hold_the_linear_values(directory, measured):
     import shadelab as sl
 
-    values = sl.scene.load_image(directory / "pictures" / "other" / "biased-bias-0.1.exr")
+    values = sl.scene.load_image(directory / "pictures" / "other" / "biased-bias-0.01.exr")
     case = study.Case("other", "", 0, None, toy.SIZE, np.dtype(np.float32), 0)
-    assert np.allclose(values.reshape(*values.shape[:2], -1)[..., 0], toy.truth(case) + 0.1, atol=1e-6)
+    assert np.allclose(values.reshape(*values.shape[:2], -1)[..., 0], toy.truth(case) + 0.01, atol=1e-6)
 
 
 def test_figures_survive_json(directory, measured, tmp_path):
@@ -150,4 +150,5 @@ def test_the_page_opens_in_a_browser_without_sideways_scroll(directory, tmp_path
     title = re.search(r"<title>(\{.*?\})</title>", dom)
     assert title, dom[:500]
     seen = json.loads(title.group(1))
-    assert seen["screen"] == width and seen["wide"] <= width and seen["broken"] == 0 and seen["pictures"] == 16
+    assert width - 20 <= seen["screen"] <= width  # the bar to scroll down by takes its part
+    assert seen["wide"] <= seen["screen"] and seen["broken"] == 0 and seen["pictures"] == 16

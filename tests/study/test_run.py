@@ -6,7 +6,7 @@ import toy
 from shadelab import study
 from shadelab.study import Candidate, External, MonteCarlo, references
 
-FAST = {"rounds": 3, "patience": 0.0, "cache": False}
+FAST = {"rounds": 3, "patience": 1.0, "cache": False}
 
 
 def by_setting(result, scene=None):

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 import time
-from collections.abc import Iterable
+from collections.abc import Iterable, Sequence
 from dataclasses import dataclass, field, replace
 from typing import Any
 
@@ -13,7 +13,7 @@ from numpy.typing import NDArray
 
 from . import statistics
 from .question import Candidate, Case, External, Question
-from .records import Record
+from .records import Record, setting_text
 from .references import Halves
 from .statistics import Interval
 
@@ -21,6 +21,9 @@ __all__ = ["Judge", "Pictures", "Setting", "external_record", "precision", "repe
 
 Array = NDArray[Any]
 UNKNOWN = Interval(math.nan, math.nan, math.nan)
+
+KEPT = 1 << 29
+"""Bytes of answers that a study keeps for its pictures."""
 
 
 @dataclass
@@ -30,6 +33,7 @@ class Setting:
     candidate: Candidate
     knobs: dict[str, Any]
     answers: list[Array] = field(default_factory=list)
+    seconds: float = 0.0
     precision: float | None = None
     prepare: list[float] = field(default_factory=list)
     run: list[float] = field(default_factory=list)
@@ -53,13 +57,15 @@ def repeat_seed(seed: int, repeat: int) -> int:
 class Judge:
     """Errors against one case's reference over its mask."""
 
-    def __init__(self, question: Question, inputs: Any, halves: Halves) -> None:
+    def __init__(self, question: Question, inputs: Any, halves: Halves, mask: Array | None = None) -> None:
         self.question, self.inputs, self.halves = question, inputs, halves
         reference = halves.mean
         residual = question.metric.residual(reference, reference, inputs)
         shape = residual.shape
         select = question.mask.select
-        self.mask = np.ones(shape[:2], bool) if select is None else np.asarray(select(reference, inputs), bool)
+        if mask is None:
+            mask = np.ones(shape[:2], bool) if select is None else np.asarray(select(reference, inputs), bool)
+        self.mask = mask
         labels = statistics.tile_labels(self.mask.shape)
         self.tiles = int(labels.max()) + 1 if labels.size else 0
         self.labels = labels[self.mask]
@@ -140,15 +146,14 @@ class Judge:
         strays = sum(int(np.count_nonzero(~np.isfinite(v))) for v in values)
         tiles = np.mean([self.sums(v) for v in values], axis=0)
         bias, noise = self._by_cause(s, values)
-        empty = Interval(math.nan, math.nan, math.nan)
         return Record(
             s.candidate.name,
             s.knobs,
             case.scene_name,
             case.view_name,
-            self.interval(tiles) if not strays else empty,
+            self.interval(tiles) if not strays else UNKNOWN,
             self.frame_error(values[0]),
-            empty,
+            UNKNOWN,
             math.nan,
             math.nan,
             math.nan,
@@ -226,7 +231,7 @@ def _judged(judge: Judge, external: External, case: Case, picture: Array) -> Rec
         {},
         case.scene_name,
         case.view_name,
-        judge.interval(sums) if not strays else Interval(math.nan, math.nan, math.nan),
+        judge.interval(sums) if not strays else UNKNOWN,
         judge.frame_error(picture),
         Interval(ms, ms, ms),
         0.0,
@@ -241,46 +246,62 @@ def _judged(judge: Judge, external: External, case: Case, picture: Array) -> Rec
 
 
 class Pictures:
-    """The answers of a study made again for whoever wants to see them: they are a function of the seed."""
+    """The answers of a study for whoever wants to see them: kept while they are small, else made again.
+
+    They are a function of the seed, so what is made again is what was measured.
+    """
 
     def __init__(
-        self,
-        question: Question,
-        settings: list[tuple[Candidate, dict[str, Any]]],
-        external: list[External],
-        cases: dict[tuple[str, str], tuple[Case, Halves]],
+        self, question: Question, settings: list[tuple[Candidate, dict[str, Any]]], external: list[External]
     ) -> None:
-        self.question, self.settings, self.external, self.cases = question, settings, external, cases
+        self.question, self.settings, self.external = question, settings, external
+        self.cases: dict[tuple[str, str], tuple[Case, Halves, Array]] = {}
+        self.answers: dict[tuple[tuple[str, str], str], Array] = {}
+        self.room = KEPT
+
+    def keep(self, case: Case, judge: Judge, settings: Sequence[Setting]) -> None:
+        """Take a case and its answers, which the settings then forget."""
+        key = (case.scene_name, case.view_name)
+        self.cases[key] = (case, judge.halves, judge.mask)
+        for s in settings:
+            first = s.answers[0]
+            if first.nbytes <= self.room:
+                self.room -= first.nbytes
+                self.answers[(key, setting_text(s.candidate.name, s.knobs))] = first
+            s.answers.clear()
 
     def __call__(self, key: tuple[str, str], wanted: Iterable[tuple[str, dict[str, Any]]]) -> dict[str, Any]:
         """Reference, mask, residual maps and 8-bit pictures of the wanted settings in one case."""
-        case, halves = self.cases[key]
+        case, halves, mask = self.cases[key]
         question = self.question
         inputs = question.setup(case)
-        judge = Judge(question, inputs, halves)
+        judge = Judge(question, inputs, halves, mask)
         made = {}
         for technique, knobs in wanted:
-            value = self._value(judge, case, technique, knobs)
+            value = self._value(judge, key, technique, knobs)
             if value is not None:
                 made[(technique, tuple(knobs.items()))] = value
         reference = halves.mean
         return {
-            "inputs": inputs,
             "reference": reference,
-            "mask": judge.mask,
+            "mask": mask,
             "values": made,
             "residual": lambda v: question.metric.residual(v, reference, inputs),
             "display": None if question.display is None else lambda v: question.display(inputs, v),
             "also": {n: (lambda v, f=f: f(v, reference, inputs)) for n, f in question.also.items()},
         }
 
-    def _value(self, judge: Judge, case: Case, technique: str, knobs: dict[str, Any]) -> Array | None:
+    def _value(self, judge: Judge, key: tuple[str, str], technique: str, knobs: dict[str, Any]) -> Array | None:
+        case = self.cases[key][0]
         for candidate, own in self.settings:
             if candidate.name == technique and own == knobs:
                 if candidate.domain(judge.inputs) is not None:
                     return None
                 s = Setting(candidate, dict(knobs))
-                return judge.value(s, s.answer(judge.inputs, repeat_seed(case.seed, 0))[0])
+                answer = self.answers.get((key, setting_text(technique, knobs)))
+                if answer is None:
+                    answer = s.answer(judge.inputs, repeat_seed(case.seed, 0))[0]
+                return judge.value(s, answer)
         for external in self.external:
             if external.title == technique:
                 picture = external.picture(case, case is next(iter(self.cases.values()))[0])

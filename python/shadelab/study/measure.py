@@ -19,7 +19,6 @@ from .judge import Judge, Pictures, Setting, external_record, precision, repeat_
 from .machine import machine
 from .question import Candidate, Case, External, MonteCarlo, Question
 from .records import CaseRecord, Record
-from .references import Halves
 from .results import Study
 
 __all__ = ["run"]
@@ -213,12 +212,11 @@ def _run(plan: _Plan, cases: list[Case], progress: Any) -> Study:
     steps = _Steps(progress, question.name, len(cases) * (2 * len(plan.settings) + 2))
     records: list[Record] = []
     described: list[CaseRecord] = []
-    kept: dict[tuple[str, str], tuple[Case, Halves]] = {}
+    pictures = Pictures(question, plan.settings, plan.external)
     for i, case in enumerate(cases):
-        new, about, halves = _measure(plan, case, i == 0, steps)
+        new, about = _measure(plan, case, i == 0, steps, pictures)
         records += new
         described.append(about)
-        kept[(case.scene_name, case.view_name)] = (case, halves)
     known = {c.name: c for c, _ in plan.settings}
     return Study(
         question.name,
@@ -244,11 +242,13 @@ def _run(plan: _Plan, cases: list[Case], progress: Any) -> Study:
         },
         {name: c.about for name, c in known.items()} | {e.title: "A picture from elsewhere." for e in plan.external},
         {name: (f.__doc__ or "").strip() for name, f in question.also.items()},
-        Pictures(question, plan.settings, plan.external, kept),
+        pictures,
     )
 
 
-def _measure(plan: _Plan, case: Case, is_first: bool, steps: _Steps) -> tuple[list[Record], CaseRecord, Halves]:
+def _measure(
+    plan: _Plan, case: Case, is_first: bool, steps: _Steps, pictures: Pictures
+) -> tuple[list[Record], CaseRecord]:
     """One case: answers of all settings, the reference refined to judge them, then times in turn."""
     question = plan.question
     inputs = question.setup(case)
@@ -268,8 +268,10 @@ def _measure(plan: _Plan, case: Case, is_first: bool, steps: _Steps) -> tuple[li
     doubles = question.setup(_in_double(case)) if plan.causes else None
     for s in settings:
         for repeat in range(2 if s.candidate.seeded and plan.causes else 1):
-            s.answers.append(s.answer(inputs, repeat_seed(case.seed, repeat))[0])
-        if doubles is not None:
+            answer, *seconds = s.answer(inputs, repeat_seed(case.seed, repeat))
+            s.answers.append(np.asarray(answer))
+            s.seconds = sum(seconds)
+        if doubles is not None and s.seconds < plan.patience:
             s.precision = precision(judge, s, doubles, case.seed)
         steps.step()
 
@@ -287,8 +289,7 @@ def _measure(plan: _Plan, case: Case, is_first: bool, steps: _Steps) -> tuple[li
     steps.step()
 
     records = [judge.record(s, case) for s in settings]
-    for s in settings:
-        s.answers.clear()
+    pictures.keep(case, judge, settings)
     _time(plan, settings, inputs, case.seed, steps)
     records = [with_times(r, s, inputs) for r, s in zip(records, settings, strict=True)]
     records += [r for e in plan.external if (r := external_record(judge, e, case, is_first)) is not None]
@@ -310,7 +311,7 @@ def _measure(plan: _Plan, case: Case, is_first: bool, steps: _Steps) -> tuple[li
         plan_html,
         tuple(left_out),
     )
-    return records, about, halves
+    return records, about
 
 
 def _in_double(case: Case) -> Case:

@@ -106,7 +106,7 @@ def _strip(
     def keep(picture: Array, name: str, caption: str, alt: str) -> Picture:
         file = f"{folder}/{name}.png"
         image = _image(picture)
-        image.save(directory / file, compress_level=4)
+        image.save(directory / file, compress_level=1)
         return Picture(caption, file, _embedded(image), alt)
 
     def keep_values(values: Array, name: str) -> None:

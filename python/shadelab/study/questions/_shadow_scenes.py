@@ -30,7 +30,8 @@ def _light(center: tuple[float, float, float], side: float, target: tuple[float,
     u /= np.linalg.norm(u)
     v = np.cross(axis, u)
     radiance = 3.0 * distance**2 / side**2
-    return RectLight(center=center, edge_u=side * u, edge_v=side * v, radiance=(radiance,) * 3)
+    edges = [(float(e[0]), float(e[1]), float(e[2])) for e in (side * u, side * v)]
+    return RectLight(center=center, edge_u=edges[0], edge_v=edges[1], radiance=(radiance,) * 3)
 
 
 def _scene(things: list[Instance], light: RectLight, camera: Camera) -> Scene:
@@ -44,7 +45,9 @@ def contact() -> Scene:
         _at(mesh.icosphere(4, 0.5), 0.7, 0.5, 0.3),
         _at(mesh.box((1.6, 0.12, 0.5)), 0.2, 0.06, 1.2, -0.3),
     ]
-    return _scene(things, _light((2.0, 4.0, 1.0), 1.0, (0.0, 0.0, 0.3)), Camera((2.4, 2.4, 4.2), (0.0, 0.4, 0.3)))
+    return _scene(
+        things, _light((2.0, 4.0, 1.0), 1.0, (0.0, 0.0, 0.3)), Camera((2.4, 2.4, 4.2), (0.0, 0.4, 0.3), fov_y=0.6)
+    )
 
 
 def thin_fence() -> Scene:
@@ -52,7 +55,9 @@ def thin_fence() -> Scene:
     post, rail = mesh.box((0.03, 1.2, 0.03)), mesh.box((3.0, 0.03, 0.03))
     things = [_at(post, x, 0.6, 0.0) for x in np.linspace(-1.45, 1.45, 18)]
     things += [_at(rail, 0.0, y, 0.0) for y in (0.35, 1.0)]
-    return _scene(things, _light((0.8, 3.5, -2.5), 0.6, (0.0, 0.0, 0.6)), Camera((1.2, 2.2, 4.4), (0.0, 0.3, 0.6)))
+    return _scene(
+        things, _light((0.8, 3.5, -2.5), 0.6, (0.0, 0.0, 0.6)), Camera((1.2, 2.2, 4.4), (0.0, 0.3, 0.6), fov_y=0.65)
+    )
 
 
 def two_depths() -> Scene:
@@ -61,13 +66,17 @@ def two_depths() -> Scene:
         _at(mesh.box((1.6, 0.1, 1.6)), -0.2, 0.45, 0.2, 0.2),
         _at(mesh.box((1.0, 0.1, 2.6)), 0.4, 1.9, 0.0, -0.4),
     ]
-    return _scene(things, _light((0.6, 4.5, 0.4), 1.2, (0.0, 0.0, 0.0)), Camera((2.6, 1.5, 4.6), (0.0, 0.4, 0.2)))
+    return _scene(
+        things, _light((0.6, 4.5, 0.4), 1.2, (0.0, 0.0, 0.0)), Camera((2.6, 1.9, 4.6), (0.1, 0.75, 0.2), fov_y=0.65)
+    )
 
 
 def large_penumbra() -> Scene:
     """A sphere and a bar high above the ground under a large near light: hardly any umbra."""
     things = [_at(mesh.icosphere(4, 0.5), -0.6, 1.3, 0.0), _at(mesh.box((0.25, 0.25, 2.4)), 0.8, 1.1, 0.0, 0.4)]
-    return _scene(things, _light((0.3, 3.2, 0.0), 2.4, (0.0, 0.0, 0.0)), Camera((1.8, 3.0, 4.6), (0.0, 0.3, 0.0)))
+    return _scene(
+        things, _light((0.3, 3.2, 0.0), 2.4, (0.0, 0.0, 0.0)), Camera((1.8, 3.0, 4.6), (0.0, 0.5, 0.0), fov_y=0.7)
+    )
 
 
 SCENES: Mapping[str, Callable[[], Scene]] = {

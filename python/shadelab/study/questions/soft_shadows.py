@@ -18,7 +18,7 @@ __all__ = ["question"]
 
 Array = NDArray[Any]
 
-_MASK_RAYS = 256
+_MASK_RAYS = 64
 """Rays that find the penumbrae: a pixel of which some of these are blocked and some pass is in the mask."""
 
 _MASK_REACH = 60
@@ -38,6 +38,7 @@ class Inputs:
     caster_faces: Array
     bvh: BVH
     covered: Array
+    face: Array
     points: Array
     geometric: Array
     shading: Array
@@ -65,12 +66,16 @@ def _setup(case: Case) -> Inputs:
     face, u, v = hit.face[covered], hit.u[covered, None], hit.v[covered, None]
     corners = arrays.faces[face]
 
+    # In double the receivers are put onto the same triangles anew: rounded ones would lie under their neighbours.
+    u, v = u.astype(case.dtype), v.astype(case.dtype)
+
     def mixed(values: Array) -> Array:
-        a, b, c = (values[corners[:, i]] for i in range(3))
+        a, b, c = (values[corners[:, i]].astype(case.dtype) for i in range(3))
         return (1 - u - v) * a + u * b + v * c
 
     seen = np.broadcast_to(directions, (*covered.shape, 3))[covered]
     points = mixed(arrays.positions)
+    assert hit.normal is not None
     geometric, shading = hit.normal[covered], mixed(arrays.normals)
     shading /= np.maximum(np.linalg.norm(shading, axis=-1, keepdims=True), np.finfo(np.float32).tiny)
     # Both sides of a surface are looked at as its front.
@@ -89,8 +94,8 @@ def _setup(case: Case) -> Inputs:
     exposure = 0.8 / max(float(np.quantile(bright, 0.98)) if bright.size else 0.0, 1e-6)
     positions = arrays.positions.astype(case.dtype)
     return Inputs(
-        lights, positions, arrays.faces, bvh, covered, points, geometric, shading, base, eye, unshadowed, exposure,
-        case.seed,
+        lights, positions, arrays.faces, bvh, covered, face, points, geometric, shading, base, eye, unshadowed,
+        exposure, case.seed,
     )  # fmt: skip
 
 
@@ -99,15 +104,16 @@ def _estimate(inputs: Inputs, samples: int, seed: int, start: int, where: Array 
     wanted = slice(None) if where is None else where[inputs.covered]
     traced = pathtrace.direct_light(
         inputs.bvh,
+        inputs.lights,
         inputs.points[wanted],
         inputs.shading[wanted],
-        inputs.lights,
         inputs.base_color[wanted],
         specular=0.0,
         eye=inputs.eye,
         samples=samples,
-        seed=seed,
         start=start,
+        seed=seed,
+        geometric_normals=inputs.geometric[wanted],
     )
     radiance = np.zeros_like(inputs.points)
     radiance[wanted] = traced.radiance
@@ -131,7 +137,7 @@ def _penumbrae(reference: Array, inputs: Inputs) -> Array:
     reach = max(1, round(inputs.covered.shape[0] / _MASK_REACH))
     found = np.zeros(inputs.covered.shape, bool)
     for source in inputs.lights:
-        lit = shadow.ray_traced(inputs.bvh, inputs.points, inputs.geometric, source, samples=_MASK_RAYS, seed=0)
+        lit = _rays(inputs, source, _MASK_RAYS, 0)
         found |= inputs.spread((lit > 0) & (lit < 1))
     return _widened(found, reach) & (inputs.spread(inputs.unshadowed.sum(0)).sum(-1) > 0)
 
@@ -161,7 +167,7 @@ def _hard(inputs: Inputs, maps: list[Any], resolution: int) -> Array:
 
 
 def _pcf(inputs: Inputs, maps: list[Any], resolution: int, samples: int, radius: float, seed: int) -> Array:
-    each = {"samples": samples, "radius": radius, "seed": seed}
+    each: dict[str, Any] = {"samples": samples, "radius": radius, "seed": seed}
     return np.stack([shadow.pcf(m, inputs.points, inputs.geometric, **each) for m in maps])
 
 
@@ -173,9 +179,14 @@ def _pcss(
 
 
 def _ray_traced(inputs: Inputs, prepared: None, samples: int, seed: int) -> Array:
-    each = {"samples": samples, "seed": seed}
-    rays = [shadow.ray_traced(inputs.bvh, inputs.points, inputs.geometric, l, **each) for l in inputs.lights]
-    return np.stack(rays)
+    return np.stack([_rays(inputs, l, samples, seed) for l in inputs.lights])
+
+
+def _rays(inputs: Inputs, source: Any, samples: int, seed: int) -> Array:
+    own = inputs.face
+    return shadow.ray_traced(
+        inputs.bvh, inputs.points, inputs.shading, source, samples=samples, seed=seed, ignore_face=own
+    )
 
 
 def _counters(technique: str) -> Any:
@@ -218,8 +229,7 @@ drawing the shadow map is."""
 
 _METRIC_ABOUT = """Root mean square, over the mask, of the difference of direct radiance (as luminance) from the
 reference, divided by the radiance that would be there with nothing in between: 0.02 is 2 % of the unshadowed light.
-Surfaces
-reflect diffusely alone, since the question is about visibility."""
+Surfaces reflect diffusely alone, since the question is about visibility."""
 
 _MASK_ABOUT = f"""Pixels whose lit fraction is strictly between 0 and 1 (by {_MASK_RAYS} rays), widened by a 60th of the
 picture's height to every side so that halos and leaks beside penumbrae count, where any light would arrive."""
@@ -285,6 +295,7 @@ def question() -> Question:
         {"FLIP": _flip, "rmse": _rmse},
         _display,
         lambda case: renderer.plan(case.scene, size=case.size),
+        size=(480, 270),
         about=_line(_ABOUT),
     )
 
