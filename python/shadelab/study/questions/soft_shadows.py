@@ -25,6 +25,11 @@ _MASK_REACH = 60
 """The mask reaches a 60th of the picture's height beyond penumbrae: halos and leaks lie beside them."""
 
 
+_FLOOR = 0.05
+"""Where less than this share of the picture's bright light would arrive, errors are taken relative to that share: at a
+terminator a relative error is large and means nothing."""
+
+
 @dataclass(frozen=True)
 class Inputs:
     """What reference and candidates are given: the G-buffer at pixel centres, and the scene to cast shadows.
@@ -91,7 +96,7 @@ def _setup(case: Case) -> Inputs:
     lights = case.scene.lights
     unshadowed = np.stack([light.unshadowed(l, points, shading, base, specular=0.0, eye=eye) for l in lights])
     bright = color.luminance(unshadowed.sum(0))
-    exposure = 0.8 / max(float(np.quantile(bright, 0.98)) if bright.size else 0.0, 1e-6)
+    exposure = 1.0 / max(float(np.quantile(bright, 0.98)) if bright.size else 0.0, 1e-6)
     positions = arrays.positions.astype(case.dtype)
     return Inputs(
         lights, positions, arrays.faces, bvh, covered, face, points, geometric, shading, base, eye, unshadowed,
@@ -126,10 +131,10 @@ def _compose(inputs: Inputs, lit: Array) -> Array:
 
 
 def _residual(value: Array, reference: Array, inputs: Inputs) -> Array:
-    """Difference of luminance in units of the unshadowed light; zero where none would arrive."""
+    """Difference of luminance in units of the unshadowed light, or of a share of the picture's where that is larger."""
     whole = color.luminance(inputs.spread(inputs.unshadowed.sum(0)))
     apart = color.luminance(np.asarray(value) - reference)
-    return np.divide(apart, whole, out=np.zeros_like(apart), where=whole > 0)
+    return apart / np.maximum(whole, whole.dtype.type(_FLOOR / inputs.exposure))
 
 
 def _penumbrae(reference: Array, inputs: Inputs) -> Array:
@@ -229,7 +234,8 @@ drawing the shadow map is."""
 
 _METRIC_ABOUT = """Root mean square, over the mask, of the difference of direct radiance (as luminance) from the
 reference, divided by the radiance that would be there with nothing in between: 0.02 is 2 % of the unshadowed light.
-Surfaces reflect diffusely alone, since the question is about visibility."""
+Where less than a twentieth of the picture's bright light (98th percentile) would arrive, as at terminators, that
+twentieth is divided by. Surfaces reflect diffusely alone, since the question is about visibility."""
 
 _MASK_ABOUT = f"""Pixels whose lit fraction is strictly between 0 and 1 (by {_MASK_RAYS} rays), widened by a 60th of the
 picture's height to every side so that halos and leaks beside penumbrae count, where any light would arrive."""
