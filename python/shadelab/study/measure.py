@@ -91,7 +91,8 @@ def run(
     reference_seconds : float
         Seconds that a case's reference may take; a reference that did not get there is marked so.
     causes : bool
-        Also split errors by cause: noise by repeating with another seed, precision by running in double.
+        Also split errors by cause: noise by repeating with another seed, precision by running in double (settings that
+        take longer than `patience` are not run in double).
     cache : bool
         Keep Monte Carlo references, by their content, in the user's cache (the directory SHADELAB_CACHE if set).
     progress : bool or callable, optional

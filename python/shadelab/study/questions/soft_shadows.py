@@ -43,7 +43,6 @@ class Inputs:
     caster_faces: Array
     bvh: BVH
     covered: Array
-    face: Array
     points: Array
     geometric: Array
     shading: Array
@@ -99,7 +98,7 @@ def _setup(case: Case) -> Inputs:
     exposure = 1.0 / max(float(np.quantile(bright, 0.98)) if bright.size else 0.0, 1e-6)
     positions = arrays.positions.astype(case.dtype)
     return Inputs(
-        lights, positions, arrays.faces, bvh, covered, face, points, geometric, shading, base, eye, unshadowed,
+        lights, positions, arrays.faces, bvh, covered, points, geometric, shading, base, eye, unshadowed,
         exposure, case.seed,
     )  # fmt: skip
 
@@ -188,10 +187,7 @@ def _ray_traced(inputs: Inputs, prepared: None, samples: int, seed: int) -> Arra
 
 
 def _rays(inputs: Inputs, source: Any, samples: int, seed: int) -> Array:
-    own = inputs.face
-    return shadow.ray_traced(
-        inputs.bvh, inputs.points, inputs.shading, source, samples=samples, seed=seed, ignore_face=own
-    )
+    return shadow.ray_traced(inputs.bvh, inputs.points, inputs.geometric, source, samples=samples, seed=seed)
 
 
 def _counters(technique: str) -> Any:
