@@ -109,7 +109,7 @@ pub fn rect_sample_many<T: Real>(
                 let to = light.point(u[i]) - from;
                 // The direction is worth having where nothing shines as well.
                 (wi[i], distance[i]) = (to.normalize().to_array(), to.dot(to.normalize()));
-                pdf[i] = light.sample(from, u[i]).map_or(distance[i] - distance[i], |s| s.pdf);
+                pdf[i] = light.sample(from, u[i]).map_or(distance[i] * T::zero(), |s| s.pdf);
             }
         })
     })

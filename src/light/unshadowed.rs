@@ -143,10 +143,10 @@ impl<T: Real> Receiver<T> {
             }
             let u = [scramble[2].fraction(x[0]), scramble[3].fraction(x[1])];
             let wi = ggx::ggx_sample(self.wo, u, self.lobes.alpha);
-            if wi.z > T::zero() {
-                if let Some(s) = rect.meet(self.point, self.frame.world(wi)) {
-                    sum = sum + self.lobes.specular(wi, self.wo) * (wi.z / (s.pdf + lobe(wi)));
-                }
+            if wi.z > T::zero()
+                && let Some(s) = rect.meet(self.point, self.frame.world(wi))
+            {
+                sum = sum + self.lobes.specular(wi, self.wo) * (wi.z / (s.pdf + lobe(wi)));
             }
         }
         sum.times(rect.radiance) * (T::one() / T::of(digits.len() as f64))

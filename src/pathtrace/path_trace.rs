@@ -128,12 +128,11 @@ impl<T: Real> Path<'_, '_, T> {
     fn rect_before(&self, origin: Vec3<T>, direction: Vec3<T>, t: T) -> Option<(Vec3<T>, T)> {
         let mut nearest = (t, None);
         for light in self.scene.lights {
-            if let Light::Rect(rect) = light {
-                if let Some(sighting) = rect.meet(origin, direction) {
-                    if sighting.distance < nearest.0 {
-                        nearest = (sighting.distance, Some((rect.radiance, sighting.pdf)));
-                    }
-                }
+            if let Light::Rect(rect) = light
+                && let Some(sighting) = rect.meet(origin, direction)
+                && sighting.distance < nearest.0
+            {
+                nearest = (sighting.distance, Some((rect.radiance, sighting.pdf)));
             }
         }
         nearest.1

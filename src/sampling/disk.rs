@@ -78,7 +78,7 @@ pub fn disk_to_square<T: Real>(p: [T; 2], method: Method) -> [T; 2] {
 pub fn square_to_disk_pdf<T: Real>(p: [T; 2]) -> T {
     let squared = p[0] * p[0] + p[1] * p[1];
     let rim = T::one() + T::of(4.0) * T::EPSILON;
-    if squared > rim { T::zero() } else { T::one() / T::PI + (squared - squared) }
+    if squared > rim { T::zero() } else { T::one() / T::PI + squared * T::zero() }
 }
 
 /// [`square_to_disk`] over an array.

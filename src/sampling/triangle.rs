@@ -49,7 +49,7 @@ pub fn triangle_to_square<T: Real>([u, v]: [T; 2], method: Method) -> [T; 2] {
 pub fn square_to_triangle_pdf<T: Real>([u, v]: [T; 2]) -> T {
     let sum = u + v;
     let outside = u < T::zero() || v < T::zero() || sum > T::one();
-    if outside { T::zero() } else { T::of(2.0) + (sum - sum) }
+    if outside { T::zero() } else { T::of(2.0) + sum * T::zero() }
 }
 
 /// [`square_to_triangle`] over an array.
