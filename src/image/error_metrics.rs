@@ -48,7 +48,7 @@ pub fn mean<T: Real>(
     channels: usize,
     mask: Option<&[bool]>,
 ) -> Result<f64, Interrupted> {
-    let pixels = if channels == 0 { 0 } else { image.len() / channels };
+    let pixels = image.len().checked_div(channels).unwrap_or(0);
     let mut blocks = vec![(0.0f64, 0usize); pixels.div_ceil(BLOCK)];
     parallel::for_each(watch, &mut blocks[..], 1, |b, out| {
         let range = b * BLOCK..((b + 1) * BLOCK).min(pixels);

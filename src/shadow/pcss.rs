@@ -159,7 +159,7 @@ fn mean_blocker<T: Real, S: Simd, const PERSPECTIVE: bool>(
         };
         let blocked = blocked & <<T::V8<S> as SimdBase<S>>::Mask as SimdMask<S>>::from_bitmask(s, active);
         count += blocked.to_bitmask().count_ones();
-        sums = sums + blocked.select(depth, all::<T, S>(s, T::zero()));
+        sums += blocked.select(depth, all::<T, S>(s, T::zero()));
     }
     let mut sum = T::zero();
     for &lane in sums.as_slice() {
