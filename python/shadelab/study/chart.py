@@ -8,8 +8,7 @@ import math
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
-from .records import Choice, Summary
-from .tables import figure_text
+from .records import Choice, Summary, figure_text
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure

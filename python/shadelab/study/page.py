@@ -7,8 +7,8 @@ from typing import TYPE_CHECKING
 
 from . import chart
 from .chart import COLORS, marker_path
-from .records import Choice
-from .tables import figure_text, html_table
+from .records import Choice, figure_text
+from .tables import html_table
 
 if TYPE_CHECKING:
     from .report import CaseStrip
@@ -53,19 +53,22 @@ dd{margin:0;overflow-wrap:anywhere;max-width:80ch}
 table.plain{border-collapse:collapse;font-size:.9em}
 table.plain th,table.plain td{padding:.25em .7em .25em 0;text-align:left;border-bottom:1px solid var(--line)}
 pre{overflow-x:auto;background:var(--box);padding:.8em;font-size:.85em}
+main .shadelab-table td:first-child{white-space:normal;min-width:12em;max-width:18em}
 @media screen and (max-width:720px){
 .wide{display:none}.narrow{display:block}
 .strip{grid-template-columns:1fr 1fr}
 .strip figure:first-child{grid-column:1/-1}
 dl{grid-template-columns:1fr}dd{margin:0 0 .6em}
-.shadelab-table th:first-child,.shadelab-table td:first-child{position:sticky;left:0;background:var(--paper)}
+main .shadelab-table th:first-child,main .shadelab-table td:first-child{position:sticky;left:0;background:var(--paper)}
+main .shadelab-table td:first-child{min-width:9.5em;max-width:44vw;font-size:.82em}
 }
 @media print{
 @page{margin:12mm}
 :root{--ink:#000;--paper:#fff;--soft:#444;--box:#f3f5f7}
 body{font-size:10pt}main{max-width:none;padding:0}nav{display:none}
 h2,h3{break-after:avoid}.strip,tr,.choice-box,.chart{break-inside:avoid}
-.shadelab-table{font-size:6.6pt}.shadelab-table th,.shadelab-table td{padding:.15em .35em}
+main .shadelab-table{font-size:6.6pt}
+main .shadelab-table th,main .shadelab-table td{padding:.15em .35em}
 .scroll,.scroll div{overflow:visible!important}
 *{print-color-adjust:exact;-webkit-print-color-adjust:exact}
 }

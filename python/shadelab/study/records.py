@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Mapping
 from dataclasses import asdict, dataclass, field
 from typing import Any
@@ -10,7 +11,18 @@ import numpy as np
 
 from .statistics import Interval
 
-__all__ = ["CaseRecord", "Choice", "NothingQualifies", "Record", "Summary", "setting_text"]
+__all__ = ["CaseRecord", "Choice", "NothingQualifies", "Record", "Summary", "figure_text", "setting_text"]
+
+
+def figure_text(value: float | None) -> str:
+    """A figure with three digits; a dash where there is none."""
+    if value is None or not math.isfinite(value):
+        return "–"
+    if value == 0:
+        return "0"
+    if 1e3 <= abs(value) < 1e6:
+        return f"{value:.0f}"
+    return f"{value:.3g}" if 1e-4 <= abs(value) < 1e3 else f"{value:.1e}"
 
 
 def setting_text(technique: str, knobs: Mapping[str, Any]) -> str:
@@ -158,7 +170,8 @@ class Summary:
 
     def __repr__(self) -> str:
         e, t = self.error, self.ms
-        return f"<{self.setting}: error {e.value:.3g} [{e.low:.3g}, {e.high:.3g}], {t.value:.3g} ms>"
+        error = f"{figure_text(e.value)} [{figure_text(e.low)}, {figure_text(e.high)}]"
+        return f"<{self.setting}: error {error}, {figure_text(t.value)} ms>"
 
 
 @dataclass(frozen=True, repr=False)
@@ -186,8 +199,9 @@ class Choice:
         e, t = self.error_interval, self.ms_interval
         where = f"worst of {self.cases} cases: {self.error_case}" if self.cases > 1 else f"case: {self.error_case}"
         return (
-            f"{self.setting}: error {e.value:.3g} [{e.low:.3g}, {e.high:.3g}], {t.value:.3g} ms "
-            f"[{t.low:.3g}, {t.high:.3g}] ({where}; {self.asked}; metric: {self.metric}; mask: {self.mask})"
+            f"{self.setting}: error {figure_text(e.value)} [{figure_text(e.low)}, {figure_text(e.high)}], "
+            f"{figure_text(t.value)} ms [{figure_text(t.low)}, {figure_text(t.high)}] "
+            f"({where}; {self.asked}; metric: {self.metric}; mask: {self.mask})"
         )
 
     def __repr__(self) -> str:

@@ -14,7 +14,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from . import statistics
-from .records import CaseRecord, Choice, NothingQualifies, Record, Summary
+from .records import CaseRecord, Choice, NothingQualifies, Record, Summary, figure_text
 from .statistics import Interval
 
 if TYPE_CHECKING:
@@ -343,7 +343,8 @@ def _nothing(asked: str, near: Summary | None) -> str:
         return f"nothing was measured in all cases, so nothing keeps {asked}"
     return (
         f"nothing keeps {asked} (confidence {statistics.CONFIDENCE:.0%}); the nearest is {near.setting}: error "
-        f"{near.error.value:.3g} (up to {near.error.high:.3g}) in {near.ms.value:.3g} ms (up to {near.ms.high:.3g})"
+        f"{figure_text(near.error.value)} (up to {figure_text(near.error.high)}) in {figure_text(near.ms.value)} ms "
+        f"(up to {figure_text(near.ms.high)})"
     )
 
 

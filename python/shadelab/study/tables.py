@@ -3,24 +3,14 @@
 from __future__ import annotations
 
 import html
-import math
 from typing import TYPE_CHECKING, Any
 
-from .records import Summary, setting_text
+from .records import Summary, figure_text, setting_text
 
 if TYPE_CHECKING:
     from .results import Study
 
-__all__ = ["STYLE", "counter_text", "figure_text", "html_table", "text_table"]
-
-
-def figure_text(value: float | None) -> str:
-    """A figure with three digits; a dash where there is none."""
-    if value is None or not math.isfinite(value):
-        return "–"
-    if value == 0:
-        return "0"
-    return f"{value:.3g}" if 1e-4 <= abs(value) < 1e4 else f"{value:.1e}"
+__all__ = ["STYLE", "counter_text", "html_table", "text_table"]
 
 
 def counter_text(value: float) -> str:
