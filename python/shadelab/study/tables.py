@@ -137,7 +137,7 @@ def html_table(study: Study, choice: tuple[str, dict[str, Any]] | None = None, p
     for s, on, cells in rows:
         kinds = [k for k, is_so in (("front", on), ("choice", s.setting == chosen)) if is_so]
         out.append(f'<tr class="{" ".join(kinds)}">' if kinds else "<tr>")
-        out.append(cell("td", 0, ("★ " if on else "") + cells[0]))
+        out.append(cell("td", 0, ("★\u00a0" if on else "") + cells[0]))
         out += [cell("td", i + 1, c) for i, c in enumerate(cells[1:])]
         out.append("</tr>")
     out.append("</tbody></table></div>")
