@@ -281,12 +281,13 @@ def shadow_map(
     perspective, origin, frame, sides = _light_frame(light, points, looked_up)
     # The map and its lookups must round the frame alike.
     origin, frame = (a.astype(points.dtype).astype(np.float64) for a in (origin, frame))
-    used = points[np.unique(triangles)].astype(np.float64)
-    local = (used - origin) @ frame.T
+    cast = np.zeros(len(points), bool)
+    cast[triangles] = True
+    used = points if cast.all() else points[cast]
     if perspective:
-        window, near, far = _fit_perspective(local, points, triangles, origin, frame, looked_up, sides)
+        window, near, far = _fit_perspective(used, points, triangles, origin, frame, looked_up, sides)
     else:
-        origin, window, near, far = _fit_orthographic(local, origin, frame, looked_up)
+        origin, window, near, far = _fit_orthographic(used, origin, frame, looked_up)
         origin = origin.astype(points.dtype).astype(np.float64)
     window = _grow(window, (width, height)).astype(points.dtype).astype(np.float64)
 
@@ -338,8 +339,18 @@ def _light_frame(
     raise TypeError(f"light: expected a PointLight, RectLight or DirectionalLight, got {type(light).__name__}")
 
 
+def _span(
+    points: Floats, origin: NDArray[np.float64], frame: NDArray[np.float64], near: float | None = None
+) -> tuple[NDArray[np.float64], float, float] | None:
+    """Window, least and greatest depth of points; at unit depth, from `near` on, if given. None if none is seen."""
+    low, high = _kernels.span(np.ascontiguousarray(points), list(origin), frame.tolist(), near)
+    if not low[2] <= high[2]:
+        return None
+    return np.array([low[0], high[0], low[1], high[1]]), low[2], high[2]
+
+
 def _fit_perspective(
-    local: NDArray[np.float64],
+    used: Floats,
     points: Floats,
     triangles: NDArray[np.int32],
     origin: NDArray[np.float64],
@@ -348,53 +359,54 @@ def _fit_perspective(
     sides: tuple[float, float],
 ) -> tuple[NDArray[np.float64], float, float]:
     """The window at unit depth, and the depths to draw between."""
-    far = float(local[:, 2].max(initial=0.0))
-    if far <= 0.0:
+    whole = _span(used, origin, frame)
+    if whole is None or whole[2] <= 0.0:
         return np.array([-1.0, 1, -1, 1]), 1.0, 1.0
+    far = whole[2]
     near = far * _NEAREST
-    front = local[local[:, 2] >= near]
-    # Where an edge passes the near plane, the triangle is seen from there on.
-    corners = ((points.astype(np.float64) - origin) @ frame.T)[triangles]
-    ends = np.concatenate([corners, np.roll(corners, -1, axis=1)], axis=-1).reshape(-1, 6)
-    ends = ends[(ends[:, 2] < near) != (ends[:, 5] < near)]
-    share = ((near - ends[:, 2]) / (ends[:, 5] - ends[:, 2]))[:, None]
-    front = np.concatenate([front, ends[:, :3] + share * (ends[:, 3:] - ends[:, :3])])
-    window = _bounds(front[:, :2] / front[:, 2:])
+    front = used
+    if whole[1] < near:
+        # Where an edge passes the near plane, the triangle is seen from there on.
+        corners = (points.astype(np.float64) - origin)[triangles]
+        ends = np.concatenate([corners, np.roll(corners, -1, axis=1)], axis=-1).reshape(-1, 6)
+        depths = np.stack([ends[:, :3] @ frame[2], ends[:, 3:] @ frame[2]])
+        passing = (depths[0] < near) != (depths[1] < near)
+        ends, depths = ends[passing], depths[:, passing]
+        share = ((near - depths[0]) / (depths[1] - depths[0]))[:, None]
+        # A rounding beyond the plane, so that none is lost before it.
+        entries = ends[:, :3] + share * (ends[:, 3:] - ends[:, :3]) + frame[2] * (near * 1e-9)
+        front = np.concatenate([used.astype(np.float64), entries + origin])
+    seen = _span(front, origin, frame, near * (1.0 - 1e-6))
+    if seen is None:
+        return np.array([-1.0, 1, -1, 1]), 1.0, 1.0
+    window, nearest, _ = seen
     if receivers is not None:
-        seen = (receivers.astype(np.float64) - origin) @ frame.T
-        seen = seen[seen[:, 2] > near]
-        if len(seen):
+        around = _span(receivers, origin, frame, near)
+        if around is not None:
             # A receiver looks at the light past blockers as near as any: its search may reach so far aside.
-            reach = np.asarray(sides) / 2 * max(1 / front[:, 2].min() - 1 / seen[:, 2].max(), 0.0)
-            around = _bounds(seen[:, :2] / seen[:, 2:]) + np.array([-1, 1, -1, 1]) * np.repeat(reach, 2)
-            window = _common(window, around)
+            reach = np.asarray(sides) / 2 * max(1 / nearest - 1 / around[2], 0.0)
+            window = _common(window, around[0] + np.array([-1, 1, -1, 1]) * np.repeat(reach, 2))
     return np.clip(window, -_MAX_TANGENT, _MAX_TANGENT), near, far
 
 
 def _fit_orthographic(
-    local: NDArray[np.float64],
+    used: Floats,
     origin: NDArray[np.float64],
     frame: NDArray[np.float64],
     receivers: Floats | None,
 ) -> tuple[NDArray[np.float64], NDArray[np.float64], float, float]:
     """The origin moved before everything, the window, and the depths to draw between."""
-    if not len(local):
+    whole = _span(used, origin, frame)
+    if whole is None:
         return origin, np.array([-1.0, 1, -1, 1]), 0.0, 1.0
-    low, high = float(local[:, 2].min()), float(local[:, 2].max())
-    margin = max((high - low) * 0.01, 1e-6 * float(np.abs(local).max()), 1e-30)
-    window = _bounds(local[:, :2])
-    if receivers is not None:
-        seen = (receivers.astype(np.float64) - origin) @ frame.T
-        if len(seen):
-            window = _common(window, _bounds(seen[:, :2]))
+    window, low, high = whole
+    margin = max((high - low) * 0.01, 1e-6 * max(abs(low), abs(high), float(np.abs(window).max())), 1e-30)
+    around = None if receivers is None else _span(receivers, origin, frame)
+    if around is not None:
+        window = _common(window, around[0])
     # One margin before the nearest, one behind the farthest caster.
     moved = origin + frame[2] * (low - 2 * margin)
     return moved, window, margin, high - low + 3 * margin
-
-
-def _bounds(xy: NDArray[np.float64]) -> NDArray[np.float64]:
-    (left, bottom), (right, top) = np.nanmin(xy, axis=0), np.nanmax(xy, axis=0)
-    return np.array([left, right, bottom, top])
 
 
 def _common(a: NDArray[np.float64], b: NDArray[np.float64]) -> NDArray[np.float64]:

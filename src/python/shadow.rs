@@ -9,6 +9,7 @@ pub mod shadow {
     use crate::real;
     use crate::real::Real;
     use crate::shadow as kernels;
+    use crate::shadow::fit::Eye;
     use crate::vec::Vec3;
     use kernels::lookup::{Bias, Map};
     use kernels::pattern::{Kind, Pattern};
@@ -59,6 +60,24 @@ pub mod shadow {
 
     /// Origin, frame, window, near, far of a view; whether it is perspective.
     type Seen = ([f64; 3], [[f64; 3]; 3], [f64; 4], f64, f64, bool);
+
+    /// Bounds of what is seen from an origin in a frame: (low, high) of both window coordinates and of the depth.
+    #[pyfunction]
+    fn span(
+        py: Python<'_>,
+        points: &Bound<'_, PyAny>,
+        origin: [f64; 3],
+        frame: [[f64; 3]; 3],
+        perspective: Option<f64>,
+    ) -> PyResult<([f64; 3], [f64; 3])> {
+        let eye = Eye { origin, frame, perspective };
+        real!(points, T => {
+            let points = In::<T>::of("points", points)?;
+            let points = points.items()?;
+            let span = run(py, None, |watch| kernels::fit::span(watch, points, &eye))?;
+            Ok((span.low, span.high))
+        })
+    }
 
     #[pyfunction]
     fn shadow_map(

@@ -6,8 +6,10 @@
 //! - [`pcss`]: percentage-closer soft shadows, whose width follows from the blockers
 //! - [`ray_traced`](mod@ray_traced): rays to the light
 //!
-//! The parts: `lookup` (the map, the bias, and the taps that all filters share), `pattern` (where the taps of a filter lie).
+//! The parts: `lookup` (the map, the bias, and the taps that all filters share), `pattern` (where the taps of a filter lie),
+//! `fit` (what a map's window must hold).
 
+pub(crate) mod fit;
 pub mod hard;
 pub(crate) mod lookup;
 pub(crate) mod pattern;
