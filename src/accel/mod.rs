@@ -15,6 +15,7 @@ mod stream;
 
 pub mod brute_force;
 pub mod offset_ray;
+#[cfg_attr(not(feature = "python"), allow(dead_code))] // arrays of rays come from Python alone
 pub(crate) mod query;
 
 use crate::parallel::{self, Interrupted, Watch};

@@ -9,6 +9,7 @@
 //! The parts: `lookup` (the map, the bias, and the taps that all filters share), `pattern` (where the taps of a filter lie),
 //! `fit` (what a map's window must hold).
 
+#[cfg_attr(not(feature = "python"), allow(dead_code))] // the face fits, the kernels do not
 pub(crate) mod fit;
 pub mod hard;
 pub(crate) mod lookup;
