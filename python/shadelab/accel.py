@@ -59,8 +59,8 @@ class BVH:
     Raises
     ------
     TypeError, ValueError
-        If an array is of the wrong kind or shape, an index is out of range, or a vertex is not finite; the first
-        that is bad is named.
+        If an array is of the wrong kind or shape, an index is out of range, a vertex is not finite or beyond 1e18
+        (float64: 1e150), or the whole mesh is smaller than 1e-12 (1e-100); the first that is bad is named.
 
     Notes
     -----
@@ -357,6 +357,16 @@ def _mesh(positions: ArrayLike, faces: ArrayLike) -> tuple[Floats, NDArray[np.in
     if not np.isfinite(p).all():
         at = int(np.argwhere(~np.isfinite(p).all(-1))[0, 0])
         raise ValueError(f"positions: vertex {at} is not finite: {p[at].tolist()}")
+    if len(p):
+        # Products of three edges must neither overflow nor vanish.
+        largest, smallest = (1e18, 1e-12) if p.dtype == np.float32 else (1e150, 1e-100)
+        far = np.abs(p).max(-1)
+        if far.max() > largest:
+            at = int(far.argmax())
+            raise ValueError(f"positions: vertex {at} lies beyond {largest:g}: {p[at].tolist()}; scale the mesh down")
+        extent = float(np.ptp(p, axis=0).max())
+        if 0.0 < extent < smallest:
+            raise ValueError(f"positions: extent {extent:g} is below {smallest:g}; scale the mesh up")
     return p, f
 
 

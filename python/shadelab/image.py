@@ -190,7 +190,8 @@ def flip_error(
     ImportError
         If flip-evaluator is missing.
     TypeError, ValueError
-        If pictures hold integers, differ in shape, are not finite, or are out of the range named above.
+        If pictures hold integers, differ in shape, are not finite, or are out of the range named above; for "hdr" also
+        if the reference is black (nothing above 1e-6) and `image` is not the same.
 
     Notes
     -----
@@ -217,6 +218,14 @@ def flip_error(
         if not np.isfinite(picture).all() or picture.min() < 0 or picture.max() > high:
             expected = "finite values, not negative" if dynamic_range == "hdr" else "values in [0, 1]"
             raise ValueError(f"{name}: expected {expected}, got {picture.min()} to {picture.max()}")
+    # Its exposures are found from the reference's brightest and median light, and the evaluator ends the process where
+    # there is none.
+    if dynamic_range == "hdr" and b.max() < 1e-6:
+        if np.array_equal(a, b):
+            return FlipError(0.0, np.zeros(a.shape[:2], np.float32))
+        raise ValueError(
+            f"reference: expected light of at least 1e-6 to choose exposures from, got {b.max():g} at most"
+        )
     try:
         import flip_evaluator
     except ImportError:

@@ -23,7 +23,9 @@ pub enum Transfer {
 #[inline(always)]
 pub fn encode_srgb<V: Lanes>(x: V) -> V {
     let a = x.abs();
-    let curve = x.num(1.055) * pow(a, x.num(1.0 / 2.4)) - x.num(0.055);
+    // 1.055 p - 0.055, arranged so that one maps to one.
+    let p = pow(a, x.num(1.0 / 2.4));
+    let curve = p + x.num(0.055) * (p - x.num(1.0));
     V::select(a.less_eq(x.num(0.0031308)), x.num(12.92) * a, curve).copysign(x)
 }
 

@@ -6,7 +6,7 @@
 //!
 //! P. Shirley, K. Chiu, *A low distortion map between disk and square*, 1997.
 
-use super::map;
+use super::{in_square, map};
 use crate::math;
 use crate::parallel::{Interrupted, Watch};
 use crate::real::Real;
@@ -20,7 +20,7 @@ pub enum Method {
 /// The point of the disk, and its distance from the rim as `(1 - r)(1 + r)` before rounding can spoil it.
 #[inline(always)]
 pub(super) fn point_and_depth<T: Real>(u: [T; 2], method: Method) -> ([T; 2], T) {
-    let (one, two) = (T::one(), T::of(2.0));
+    let (one, two, u) = (T::one(), T::of(2.0), in_square(u));
     match method {
         Method::Concentric => {
             // Distances from the square's border, exact near it; radius with a sign, so that a wedge and its mirror

@@ -15,6 +15,13 @@ use crate::dispatch;
 use crate::parallel::{self, Interrupted, Watch};
 use crate::real::Real;
 
+/// A point of the closed unit square as it is; NaN beyond it, where no warp holds.
+#[inline(always)]
+fn in_square<T: Real>(u: [T; 2]) -> [T; 2] {
+    let unit = T::zero()..=T::one();
+    if unit.contains(&u[0]) && unit.contains(&u[1]) { u } else { [T::NAN; 2] }
+}
+
 /// `f` of every item.
 fn map<T: Real, const A: usize, const B: usize>(
     watch: &mut dyn Watch,

@@ -5,7 +5,7 @@
 //! E. Heitz, *A low-distortion map between triangle and square*, 2019; P. Shirley, C. Wang, K. Zimmerman, *Monte Carlo
 //! techniques for direct lighting calculations*, 1996 (roots).
 
-use super::map;
+use super::{in_square, map};
 use crate::parallel::{Interrupted, Watch};
 use crate::real::Real;
 
@@ -16,8 +16,8 @@ pub enum Method {
 }
 
 #[inline(always)]
-pub fn square_to_triangle<T: Real>([s, t]: [T; 2], method: Method) -> [T; 2] {
-    let half = T::of(0.5);
+pub fn square_to_triangle<T: Real>(u: [T; 2], method: Method) -> [T; 2] {
+    let ([s, t], half) = (in_square(u), T::of(0.5));
     match method {
         // Each half of the square is pushed down its diagonal's slope; both differences are free of cancellation.
         Method::Fold if t > s => [half * s, t - half * s],

@@ -134,3 +134,22 @@ def test_negative_zero_is_a_direction_like_zero(dtype):
     origin = np.array([-0.5, 0, 0.25], dtype)
     assert tree.any_hit(origin, sides).all() and np.array_equal(tree.closest_hit(origin, sides).t, np.ones(16))
     assert np.array_equal(tree.closest_hit(origin + np.array([0, 2, 0], dtype), -sides).face >= 0, np.ones(16, bool))
+
+
+@pytest.mark.parametrize(("dtype", "bad"), [(np.float32, (1e30, 1e-25)), (np.float64, (1e300, 1e-200))])
+def test_meshes_too_large_or_too_small_to_test_are_refused(dtype, bad):
+    triangle = np.array([[0, 0, 0], [1, 0, 0], [0, 1, 0]], dtype)
+    with pytest.raises(ValueError, match="positions: vertex 1 lies beyond"):
+        sl.accel.BVH(triangle * dtype(bad[0]), [[0, 1, 2]])
+    with pytest.raises(ValueError, match=r"positions: extent .* scale the mesh up"):
+        sl.accel.BVH(triangle * dtype(bad[1]), [[0, 1, 2]])
+
+
+@pytest.mark.parametrize(("dtype", "held"), [(np.float32, (1e17, 2e-12)), (np.float64, (1e149, 2e-100))])
+def test_meshes_at_the_ends_of_the_domain_are_hit(dtype, held):
+    triangle = np.array([[0, 0, 0], [1, 0, 0], [0, 1, 0]], dtype)
+    for size in held:
+        size = dtype(size)
+        bvh = sl.accel.BVH(triangle * size, [[0, 1, 2]])
+        hit = bvh.closest_hit(np.array([0.25, 0.5, 2], dtype) * size, np.array([0, 0, -1], dtype))
+        assert hit.face == 0 and np.isclose(hit.t / size, 2, rtol=1e-6)

@@ -56,3 +56,9 @@ def test_bad_arguments_are_named():
         sl.color.encode_transfer([0.5], "rec2020")
     with pytest.raises(ValueError, match="gamma: expected"):
         sl.color.encode_transfer([0.5], "gamma", gamma=0)
+
+
+@pytest.mark.parametrize("dtype", DTYPES)
+def test_white_is_white(dtype):
+    one = np.ones(1, dtype)
+    assert sl.color.encode_transfer(one) == 1 and sl.color.decode_transfer(one) == 1

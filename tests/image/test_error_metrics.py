@@ -91,5 +91,9 @@ def test_flip_sees_differences_and_only_those():
     assert other.map[8:16, 8:16].mean() > 10 * other.map[:, 40:].mean() and other.mean > 0
     with pytest.raises(ValueError, match=r"image: expected values in \[0, 1\]"):
         sl.image.flip_error(b, a, dynamic_range="ldr")
+    black = np.zeros_like(a)
+    assert sl.image.flip_error(black, black).mean == 0
+    with pytest.raises(ValueError, match="reference: expected light"):
+        sl.image.flip_error(a, black)
     with pytest.raises(ValueError, match="image: expected finite values"):
         sl.image.flip_error(a - 1, a)

@@ -36,3 +36,8 @@ def test_the_inverse_returns_to_the_square(method, dtype):
     back = sl.sampling.cosine_hemisphere_to_square(d, method)
     scale = np.hypot(d[:, 0], d[:, 1])[:, None] if method == "polar" else 1
     assert (np.abs(back - u) * scale).max() < 4 * np.finfo(dtype).eps
+
+
+def test_points_beyond_the_square_are_nan_alone():
+    got = sl.sampling.square_to_cosine_hemisphere([[2.0, 0.5], [-1.0, 0.5], [0.5, np.nan], [0.5, 0.25]])
+    assert np.isnan(got[:3]).all() and np.isfinite(got[3]).all()

@@ -61,3 +61,8 @@ def test_nan_stays_in_its_row():
 def test_unknown_methods_are_named():
     with pytest.raises(ValueError, match="method: expected one of 'concentric', 'polar', got 'square'"):
         sl.sampling.square_to_disk([0.5, 0.5], "square")
+
+
+def test_points_beyond_the_square_are_nan_alone():
+    got = sl.sampling.square_to_disk([[2.0, 0.5], [-1.0, 0.5], [0.5, np.nan], [0.5, 0.25]])
+    assert np.isnan(got[:3]).all() and np.isfinite(got[3]).all()

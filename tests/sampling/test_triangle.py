@@ -49,3 +49,8 @@ def test_density_is_two_inside_and_integrates_to_one():
 def test_nan_stays_in_its_row():
     p = sl.sampling.square_to_triangle([[np.nan, 0.5], [0.5, 0.5]])
     assert np.isnan(p[0]).any() and np.array_equal(p[1], [0.25, 0.25])
+
+
+def test_points_beyond_the_square_are_nan_alone():
+    got = sl.sampling.square_to_triangle([[2.0, 0.5], [-1.0, 0.5], [0.5, np.nan], [0.5, 0.25]])
+    assert np.isnan(got[:3]).all() and np.isfinite(got[3]).all()
