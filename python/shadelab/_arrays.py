@@ -8,6 +8,7 @@ from __future__ import annotations
 
 import math
 import operator
+import warnings
 from collections.abc import Callable, Sequence
 from typing import Any, TypeAlias
 
@@ -31,6 +32,7 @@ __all__ = [
     "progress_callback",
     "result_dtype",
     "vectors",
+    "warn_if_coarse",
 ]
 
 
@@ -195,6 +197,17 @@ def choice(name: str, value: Any, options: Sequence[str]) -> str:
     if value not in options:
         raise ValueError(f"{name}: expected one of {', '.join(map(repr, options))}, got {value!r}")
     return value
+
+
+def warn_if_coarse(positions: NDArray[Any], dtype: DTypeLike, level: int) -> None:
+    """Warns at the caller's line if points are so far from the origin that a precision loses their shape."""
+    if not positions.size:
+        return
+    low, high = positions.min(0).astype(np.float64), positions.max(0).astype(np.float64)
+    step = float(np.finfo(np.dtype(dtype)).eps) * float(np.maximum(np.abs(low), np.abs(high)).max())
+    if step > 1e-3 * float((high - low).max()):
+        text = f"scene: {np.dtype(dtype)} loses its shape so far from the origin (steps of {step:.2g}); move it there"
+        warnings.warn(text, RuntimeWarning, stacklevel=level)
 
 
 def progress_callback(progress: bool | Callable[[int, int], object] | None, label: str) -> Any:

@@ -130,12 +130,15 @@ class Mesh:
         if m.ndim != 2:
             raise ValueError(f"matrix: expected shape (4, 4), got {m.shape}")
         mirrored = np.linalg.det(m[:3, :3]) < 0
-        return replace(
-            self,
-            positions=transform.transform_points(self.positions, m),
-            normals=None if self.normals is None else transform.transform_normals(self.normals, m),
-            faces=np.ascontiguousarray(self.faces[:, ::-1]) if mirrored else self.faces,
-        )
+        positions = transform.transform_points(self.positions, m)
+        faces = np.ascontiguousarray(self.faces[:, ::-1]) if mirrored else self.faces
+        normals = None if self.normals is None else transform.transform_normals(self.normals, m)
+        if normals is not None and not np.isfinite(normals).all():
+            # A flattening leaves no inverse: what is left of the faces tells the normals.
+            lost = ~np.isfinite(normals).all(-1)
+            left = vertex_normals(positions, faces)[lost]
+            normals[lost] = np.where(np.isfinite(left).all(-1, keepdims=True), left, 0.0)
+        return replace(self, positions=positions, normals=normals, faces=faces)
 
 
 def _rows(name: str, value: ArrayLike, width: int, dtype: DTypeLike | None = None) -> Floats:

@@ -98,6 +98,11 @@ def _pinhole(camera: Camera, size: Size) -> tuple[tuple[float, ...], ...]:
     return tuple(tuple(float(x) for x in v) for v in (eye, corner, right * step, down * step))
 
 
+def _check_bvh(bvh: Any) -> None:
+    if not isinstance(bvh, BVH):
+        raise TypeError(f"bvh: expected a BVH, got {type(bvh).__name__}")
+
+
 def _offset(positions: Floats) -> float:
     largest = float(np.abs(positions).max()) if positions.size else 0.0
     return _OFFSET * float(np.finfo(positions.dtype).eps) * largest
@@ -141,6 +146,7 @@ def ray_cast(bvh: BVH, camera: Camera, size: Size) -> Hit:
            [-1,  0, -1],
            [ 0,  0,  0]], dtype=int32)
     """
+    _check_bvh(bvh)
     width, height = _size(size)
     dtype = bvh._positions.dtype
     t, u, v = (np.empty((height, width), dtype) for _ in range(3))
@@ -233,6 +239,7 @@ def direct_light(
     array([[0. , 0. , 0. ],
            [0.5, 0.5, 0.5]])
     """
+    _check_bvh(bvh)
     table = light._table("lights", lights)
     dtype = bvh._positions.dtype
     r = light._receivers(points, normals, wo, eye, (base_color, metallic, roughness, specular), material_ids, dtype)
@@ -293,7 +300,7 @@ def path_trace(
         Stops once the picture's standard error (root mean square over pixels and channels) is this fraction of its
         mean radiance, asked after 16, 32, 64 … samples.
     bvh : BVH, optional
-        Of the flattened scene, in `dtype`; built if None.
+        Of the flattened scene, in `dtype`: of the same vertices and faces; built if None.
     dtype : float32 or float64
         Of the computation; sums are in double.
     progress : bool or callable, optional
@@ -313,7 +320,8 @@ def path_trace(
     -----
     Unbiased up to `max_depth`. Box-filtered pixels; every light is sampled at every reflection, so time grows with
     their number. Rectangles are seen from the side that shines, stop what meets it, and are not there from behind;
-    surfaces have two sides. No firefly is clamped: caustics from narrow mirrors converge slowly, and `variance` shows
+    surfaces have two sides. (`shadelab.render` draws no lights.) The camera's `near` and `far` cut nothing off:
+    paths start at the eye. No firefly is clamped: caustics from narrow mirrors converge slowly, and `variance` shows
     where. Fails to find light that only a mirror chain leads to (point lights seen in mirrors).
 
     References
@@ -360,8 +368,12 @@ def _tracer(
     arrays = scene.flatten(dtype)
     if bvh is None:
         bvh = BVH(arrays.positions, arrays.faces)
-    elif bvh._positions.dtype != dtype or len(bvh._faces) != len(arrays.faces):
-        raise ValueError(f"bvh: expected one of the flattened scene in {dtype}")
+    else:
+        _check_bvh(bvh)
+        own, mine = (bvh._positions, bvh._faces), (arrays.positions, arrays.faces)
+        if own[0].dtype != dtype or not all(np.array_equal(a, b) for a, b in zip(own, mine, strict=True)):
+            raise ValueError(f"bvh: expected one of the flattened scene in {dtype}")
+    _arrays.warn_if_coarse(arrays.positions, dtype, 4)
     mesh = (arrays.positions, arrays.faces, arrays.normals, arrays.material_ids)
     tables = (arrays.base_color, arrays.metallic, arrays.roughness, arrays.specular, arrays.emission)
     flat = [np.require(a, requirements=["C", "A"]) for a in (*mesh, *tables)]

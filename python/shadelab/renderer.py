@@ -53,6 +53,8 @@ class Plan:
     passes: tuple[Pass, ...]
     left_out: tuple[LeftOut, ...]
     size: tuple[int, int]
+    lights: int | None = None
+    """How many lights the scene has that it was made for; None if it does not say."""
 
     def find(self, name: str) -> Pass | None:
         """The pass of a name, None if it was left out.
@@ -306,6 +308,8 @@ def _picked(evidence: Any, max_error: float | None, budget_ms: float | None) -> 
     asked = {k: _arrays.number(k, v, above=0.0) for k, v in bounds.items() if v is not None}
     if not asked:
         raise ValueError("evidence: expected max_error or budget_ms beside it")
+    if not callable(getattr(evidence, "pick", None)):
+        raise TypeError(f"evidence: expected the result of a study, got {type(evidence).__name__}")
     choice = evidence.pick(**asked)
     if choice is None:
         raise ValueError(f"evidence: nothing that was measured keeps {asked}")
@@ -408,11 +412,16 @@ def plan(
     >>> print("; ".join(p.name for p in plan(Scene([box()], [PointLight((0, 5, 0), (9, 9, 9))])).passes))
     g-buffer; direct light
     """
-    width, height = size
-    size = _arrays.count("size", width, 1, raster.MAX_SIZE), _arrays.count("size", height, 1, raster.MAX_SIZE)
+    _check_scene(scene)
+    size = _checked_size(size)
     if evidence is None and not (max_error is None and budget_ms is None):
         raise ValueError("evidence: expected the result of a study beside max_error or budget_ms")
     measured = _picked(evidence, max_error, budget_ms) if evidence is not None else None
+    _arrays.warn_if_coarse(scene.flatten(np.float32).positions, np.float32, 3)
+    return _decided(scene, size, measured)
+
+
+def _decided(scene: Any, size: tuple[int, int], measured: tuple[str, dict[str, Any], str] | None) -> Plan:
     facts = _facts(scene, size)
     passes: list[Pass] = []
     left_out: list[LeftOut] = []
@@ -420,7 +429,8 @@ def plan(
     if not len(facts.faces):
         left_out += [LeftOut(n, "the scene has no surfaces") for n in ("g-buffer", "shadow", "direct light", "ambient")]
         passes.append(Pass("background", "all that is seen"))
-        return Plan(tuple(passes), tuple(left_out), size)
+        left_out += _light_surfaces(scene, size)
+        return Plan(tuple(passes), tuple(left_out), size, len(lamps))
 
     passes.append(Pass("g-buffer", "which surface each pixel sees: everything else is done once a pixel"))
     reaching = []
@@ -443,9 +453,47 @@ def plan(
         passes.append(Pass("direct light", f"{count} the scene", {"lights": tuple(reaching), "samples": 16}))
     elif not lamps:
         left_out.append(LeftOut("direct light", "the scene has no lights"))
+    left_out += _light_surfaces(scene, size)
     passes, left_out = _surroundings(scene, passes, left_out)
     left_out.append(LeftOut("tone map", "a matter of display: the frame stays linear"))
-    return Plan(tuple(passes), tuple(left_out), size)
+    return Plan(tuple(passes), tuple(left_out), size, len(lamps))
+
+
+def _check_scene(scene: Any) -> None:
+    from .scene import Scene
+
+    if not isinstance(scene, Scene):
+        raise TypeError(f"scene: expected a Scene, got {type(scene).__name__}")
+
+
+def _checked_size(size: Any) -> tuple[int, int]:
+    try:
+        width, height = size
+    except (TypeError, ValueError):
+        kind: type[Exception] = TypeError if np.ndim(size) == 0 else ValueError
+        raise kind(f"size: expected (width, height), got {size!r}") from None
+    return _arrays.count("size", width, 1, raster.MAX_SIZE), _arrays.count("size", height, 1, raster.MAX_SIZE)
+
+
+def _light_surfaces(scene: Any, size: tuple[int, int]) -> list[LeftOut]:
+    """The rectangular lights that may be in view: they shine, but no pass draws them."""
+    camera, several = scene.camera, len(scene.lights) > 1
+    eye, view = np.asarray(camera.eye, np.float64), np.asarray(camera.view(), np.float64)
+    up = math.tan(float(camera.fov_y) / 2.0)
+    aside = up * size[0] / size[1]
+    found = []
+    for i, lamp in enumerate(scene.lights):
+        if not isinstance(lamp, light.RectLight) or _brightness(lamp) == 0.0:
+            continue
+        if not lamp.two_sided and _rect_depths(lamp, eye[None])[0] <= 0.0:
+            continue
+        x, y, z = view[:3, :3] @ np.array(_corners(lamp)).T + view[:3, 3:]
+        # Out of view if all corners are beyond one of the picture's sides.
+        sides = (-z, x - aside * z, -x - aside * z, y - up * z, -y - up * z)
+        if all((s > 0.0).any() for s in sides):
+            suffix = f" {i}" if several else ""
+            found.append(LeftOut(f"light surface{suffix}", "it is in view, but no pass draws lights: path_trace does"))
+    return found
 
 
 def _surroundings(scene: Any, passes: list[Pass], left_out: list[LeftOut]) -> tuple[list[Pass], list[LeftOut]]:
@@ -515,7 +563,9 @@ def _above_horizon(lamp: Any, seen: _Seen) -> NDArray[np.bool_]:
     """Whether any part of a light is above the plane of the surface itself, whatever the shading normal says."""
     n = seen.geometric
     if isinstance(lamp, light.DirectionalLight):
-        return np.asarray(n @ np.asarray(lamp.direction, n.dtype) < 0)
+        # Of unit length before it is rounded: in single precision 1e-300 is nothing.
+        direction = shadow._unit("direction", np.asarray(lamp.direction, np.float64))
+        return np.asarray(n @ direction.astype(n.dtype) < 0)
     corners = [np.asarray(lamp.position)] if isinstance(lamp, light.PointLight) else _corners(lamp)
     here = np.einsum("ij,ij->i", seen.points, n)
     return np.asarray(np.max([n @ corner.astype(n.dtype) for corner in corners], axis=0) > here)
@@ -552,14 +602,10 @@ class _Clock:
             self._tell(len(self.times), self._total)
 
 
-# `render` has an argument of this name.
-_plan = plan
-
-
 def render(
     scene: Any,
     plan: Plan | None = None,
-    size: tuple[int, int] = (1280, 720),
+    size: tuple[int, int] | None = None,
     *,
     seed: int = 0,
     progress: bool | Callable[[int, int], object] | None = None,
@@ -572,8 +618,8 @@ def render(
         What is rendered, in float32.
     plan : Plan, optional
         The passes; by default `plan(scene, size)`.
-    size : (int, int)
-        Width and height in pixels; a plan brings its own.
+    size : (int, int), optional
+        Width and height in pixels; by default those of the plan, or 1280 x 720.
     seed : int
         Of the noise in filters and samples: the same seed gives the same bits.
     progress : bool or callable, optional
@@ -587,13 +633,14 @@ def render(
     Raises
     ------
     TypeError, ValueError
-        If the plan does not fit the scene, or a size is out of range.
+        If the plan does not fit the scene or the size, or an argument is out of range.
 
     Notes
     -----
     Direct light is what would arrive with nothing in between (`shadelab.light.unshadowed`: exact for diffuse
     reflection) times the lit fraction that the plan's technique finds, plus the background's light as if nothing
-    hid it, plus emission. No light is reflected twice, and lights themselves are not seen. Where a light is wholly
+    hid it, plus emission. No light is reflected twice. Lights themselves are not seen, though
+    `shadelab.pathtrace.path_trace` shows rectangles: the plan lists those in view as left out. Where a light is wholly
     visible the result is that of `shadelab.pathtrace.direct_light` up to the noise of glossy reflection.
 
     Examples
@@ -603,15 +650,17 @@ def render(
     >>> frame.radiance.shape, [name for name in frame.times]  # doctest: +NORMALIZE_WHITESPACE
     ((36, 64, 3), ['g-buffer', 'shadow map', 'shadow', 'direct light', 'ambient'])
     """
-    chosen = _plan(scene, size) if plan is None else plan
-    if not isinstance(chosen, Plan):
-        raise TypeError(f"plan: expected a Plan, got {type(plan).__name__}")
+    _check_scene(scene)
+    seed = _arrays.count("seed", seed, 0, 2**64 - 1)
+    chosen = _decided(scene, _checked_size((1280, 720) if size is None else size), None) if plan is None else plan
+    _check_plan(chosen, scene, size)
     tell = _arrays.progress_callback(progress, "render")
     clock = _Clock(len(chosen.passes), tell)
     width, height = chosen.size
     background = np.asarray(scene.background, np.float32)
     lamps = list(scene.lights)
     arrays = scene.flatten(np.float32)
+    _arrays.warn_if_coarse(arrays.positions, np.float32, 3)
     if chosen.find("g-buffer") is None:
         return _empty_frame(chosen, background, len(lamps), clock)
 
@@ -661,6 +710,20 @@ def render(
         clock.times,
         chosen,
     )
+
+
+def _check_plan(chosen: Any, scene: Any, size: Any) -> None:
+    if not isinstance(chosen, Plan):
+        raise TypeError(f"plan: expected a Plan, got {type(chosen).__name__}")
+    if size is not None and _checked_size(size) != tuple(chosen.size):
+        raise ValueError(f"plan: made for another size, {tuple(chosen.size)}, than {tuple(size)}")
+    lights = len(scene.lights)
+    if chosen.lights is not None and chosen.lights != lights:
+        raise ValueError(f"plan: made for another scene, with {chosen.lights} lights instead of {lights}")
+    for p in chosen.passes:
+        wanted = p.settings.get("lights", (0,) if p.name in ("shadow map", "shadow") else ())
+        if max(wanted, default=-1) >= lights:
+            raise ValueError(f"plan: made for another scene, whose light {max(wanted)} this one does not have")
 
 
 def _split(name: str, lamps: list[Any]) -> tuple[str, int]:

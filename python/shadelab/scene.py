@@ -163,7 +163,8 @@ class Camera:
         Returns
         -------
         origins, directions : ndarray, shape (height, width, 3)
-            Directions are of unit length. Origins are all the eye: a read-only view of one point.
+            Directions are of unit length. Origins are all the eye, whatever `near` and `far`: a read-only view of one
+            point.
 
         Raises
         ------

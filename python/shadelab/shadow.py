@@ -14,7 +14,7 @@ from typing import Any, Literal, NamedTuple, TypeAlias, overload
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from . import _arrays
+from . import _arrays, accel
 from ._arrays import Floats
 from ._kernels import shadow as _kernels
 from .accel import BVH
@@ -60,7 +60,8 @@ class ShadowMap:
     Raises
     ------
     TypeError, ValueError
-        If an argument has the wrong type or shape, or the window has no extent.
+        If an argument has the wrong type or shape, a texel is NaN, the frame's rows are not unit vectors square to each
+        other, the window has no extent, or depths are out of order (or negative in a perspective map).
     """
 
     depth: Floats
@@ -79,6 +80,8 @@ class ShadowMap:
         depth = _arrays.floats("depth", self.depth)
         if depth.ndim != 2 or 0 in depth.shape:
             raise ValueError(f"depth: expected shape (H, W), neither zero, got {depth.shape}")
+        if np.isnan(depth.min()):
+            raise ValueError("depth: expected numbers or infinity, got NaN")
         fix("depth", depth)
         _arrays.choice("projection", self.projection, ("perspective", "orthographic"))
         for name, shape in (("position", (3,)), ("frame", (3, 3)), ("window", (4,))):
@@ -86,11 +89,16 @@ class ShadowMap:
             if value.shape != shape or not np.isfinite(value).all():
                 raise ValueError(f"{name}: expected shape {shape} of finite numbers, got {value.tolist()}")
             fix(name, value)
+        # Frames are rounded to the precision of maps.
+        if np.abs(self.frame @ self.frame.T - np.eye(3)).max() > 1e-4:
+            raise ValueError(f"frame: expected unit vectors square to each other, got {self.frame.tolist()}")
         left, right, bottom, top = self.window
         if not (left < right and bottom < top):
             raise ValueError(f"window: expected left < right and bottom < top, got {self.window.tolist()}")
-        fix("near", _arrays.number("near", self.near))
-        fix("far", _arrays.number("far", self.far))
+        # Parallel maps have their origin anywhere along the axis.
+        low = 0.0 if self.projection == "perspective" else -math.inf
+        fix("near", _arrays.number("near", self.near, low))
+        fix("far", _arrays.number("far", self.far, self.near))
         fix("light_size", _sides("light_size", self.light_size))
 
     @property
@@ -247,7 +255,7 @@ def shadow_map(
     Raises
     ------
     TypeError, ValueError
-        If an argument has the wrong type or shape, or the light points nowhere.
+        If an argument has the wrong type or shape, a vertex is not finite, or the light points nowhere.
 
     Notes
     -----
@@ -270,6 +278,9 @@ def shadow_map(
     points = _arrays.vectors("positions", positions)
     if points.ndim != 2:
         raise ValueError(f"positions: expected shape (V, 3), got {points.shape}")
+    finite = np.isfinite(points).all(-1)
+    if not finite.all():
+        raise ValueError(f"positions: vertex {int(np.argmin(finite))} is not finite")
     given = np.asarray(faces)
     triangles = _arrays.indices("faces", given.reshape(0, 3) if given.size == 0 else given, 3, len(points))
     width, height = (resolution, resolution) if np.ndim(resolution) == 0 else resolution  # type: ignore[misc]
@@ -277,6 +288,8 @@ def shadow_map(
     height = _arrays.count("resolution", height, 1, _MAX_RESOLUTION)
     _arrays.choice("cull", cull, ("none", "back", "front"))
     looked_up = None if receivers is None else _arrays.vectors("receivers", receivers).reshape(-1, 3)
+    if looked_up is not None and not (seen := np.isfinite(looked_up).all(-1)).all():
+        looked_up = looked_up[seen] if seen.any() else None
 
     perspective, origin, frame, sides = _light_frame(light, points, looked_up)
     # The map and its lookups must round the frame alike.
@@ -303,6 +316,10 @@ def shadow_map(
 
 
 def _unit(name: str, v: NDArray[np.float64]) -> NDArray[np.float64]:
+    # Squares of the largest and least numbers are out of range.
+    largest = np.abs(v).max()
+    if np.isfinite(largest) and largest > 0:
+        v = v / largest
     length = np.linalg.norm(v)
     if not (np.isfinite(length) and length > 0):
         raise ValueError(f"{name}: expected a direction, got {v.tolist()}")
@@ -841,9 +858,7 @@ def ray_traced(
     shape, flat = _arrays.broadcast(named)
     faces = None
     if ignore_face is not None:
-        ids = np.asarray(ignore_face)
-        if ids.dtype.kind not in "iu":
-            raise TypeError(f"ignore_face: expected integers, got dtype {ids.dtype}")
+        ids = accel._ignored(ignore_face, len(bvh._faces))
         try:
             faces = np.ascontiguousarray(np.broadcast_to(ids, shape), np.int32).reshape(-1)
         except ValueError:

@@ -245,3 +245,20 @@ def test_wrong_calls_name_the_argument():
         sl.pathtrace.path_trace(world, (4, 4), 0)
     with pytest.raises(ValueError, match="target_error: expected a number"):
         sl.pathtrace.path_trace(world, (4, 4), 1, target_error=0)
+
+
+def test_a_bvh_of_other_vertices_is_refused():
+    ball, other = (scene.Scene(m.astype(np.float32)) for m in (mesh.icosphere(1), mesh.icosphere(1, radius=2.0)))
+    arrays, wrong = ball.flatten(), other.flatten()
+    same = sl.accel.BVH(arrays.positions, arrays.faces)
+    assert sl.pathtrace.path_trace(ball, (4, 4), samples=1, bvh=same).samples == 1
+    for bvh in (
+        sl.accel.BVH(wrong.positions, wrong.faces),
+        sl.accel.BVH(arrays.positions, np.roll(arrays.faces, 1, axis=1)),
+    ):
+        with pytest.raises(ValueError, match="bvh: expected one of the flattened scene"):
+            sl.pathtrace.path_trace(ball, (4, 4), samples=1, bvh=bvh)
+    with pytest.raises(TypeError, match="bvh: expected a BVH"):
+        sl.pathtrace.path_trace(ball, (4, 4), samples=1, bvh=5)
+    with pytest.raises(TypeError, match="bvh: expected a BVH"):
+        sl.pathtrace.direct_light(5, [], [0.0, 0, 0], [0.0, 1, 0], [0.5] * 3, eye=[0.0, 1, 0])

@@ -168,3 +168,30 @@ def test_prints_and_shows_itself():
     for x in plan.left_out:
         assert f"left out: {x.reason}" in text and f"left out: {x.reason}" in table
     assert np.all([line == line.rstrip() for line in text.splitlines()])
+
+
+def test_lights_in_view_are_left_out_with_a_reason():
+    def names(lights, camera=CAMERA):
+        return [x.name for x in sl.plan(Scene([GROUND, BOX], lights, camera)).left_out if "surface" in x.name]
+
+    facing = RectLight((0, 1, -2), (1, 0, 0), (0, 1, 0), (9, 9, 9))
+    away = RectLight((0, 1, -2), (0, 1, 0), (1, 0, 0), (9, 9, 9))
+    behind = RectLight((0, 1, 40), (1, 0, 0), (0, 1, 0), (9, 9, 9), two_sided=True)
+    camera = Camera((0, 1, 5), (0, 1, 0))
+    assert names(facing, camera) == ["light surface"]
+    assert names([away, behind, facing], camera) == ["light surface 2"]
+    assert names(PointLight((0, 1, 0), (9, 9, 9)), camera) == []
+
+
+def test_wrong_kinds_are_named():
+    scene = Scene([GROUND, BOX], AREA, CAMERA)
+    with pytest.raises(TypeError, match="scene: expected a Scene"):
+        sl.plan(None)
+    with pytest.raises(TypeError, match="scene: expected a Scene"):
+        sl.render(None)
+    with pytest.raises(TypeError, match="size"):
+        sl.plan(scene, 5)
+    with pytest.raises(ValueError, match="size"):
+        sl.plan(scene, (5, 5, 5))
+    with pytest.raises(TypeError, match="evidence"):
+        sl.plan(scene, evidence="x", max_error=0.1)

@@ -1,11 +1,13 @@
 """Frames: unshadowed light in closed form times visibility, buffers that agree, pictures that open."""
 
 import io
+import warnings
+from dataclasses import replace
 
 import numpy as np
 import pytest
 import shadelab as sl
-from shadelab.light import PointLight, RectLight
+from shadelab.light import DirectionalLight, PointLight, RectLight
 from shadelab.scene import Camera, Instance, Material, Scene
 
 SIZE = (160, 90)
@@ -162,7 +164,52 @@ def test_shows_itself_as_a_picture(frame, tmp_path):
 def test_a_plan_of_another_scene_is_refused():
     scene = Scene([GROUND, BOX], [AREA, AREA], CAMERA)
     made = sl.plan(scene, SIZE)
-    with pytest.raises(ValueError, match="a light that the scene does not have"):
+    with pytest.raises(ValueError, match="made for another scene, with 2 lights instead of 1"):
         sl.render(Scene([GROUND, BOX], [AREA], CAMERA), made)
     with pytest.raises(TypeError, match="plan: expected a Plan"):
         sl.render(scene, "fast")
+
+
+@pytest.mark.parametrize("length", [1e-300, 1e300])
+def test_lights_far_from_unit_length_shine_alike(length):
+    def picture(y):
+        return sl.render(Scene([GROUND, BOX], DirectionalLight((0, y, 0), (3, 3, 3)), CAMERA), size=(32, 18)).radiance
+
+    assert np.array_equal(picture(-length), picture(-1.0)) and picture(-1.0).max() > 0.1
+
+
+def test_plans_fit_their_scene_and_size():
+    one, none = Scene([GROUND, BOX], AREA, CAMERA), Scene([GROUND, BOX], [], CAMERA)
+    two = Scene([GROUND, BOX], [AREA, AREA], CAMERA)
+    for made, other in ((one, none), (one, two), (two, one), (none, one)):
+        with pytest.raises(ValueError, match="plan: made for another scene"):
+            sl.render(other, sl.plan(made, SIZE))
+    by_hand = replace(sl.plan(two, SIZE), lights=None)
+    with pytest.raises(ValueError, match="plan: made for another scene"):
+        sl.render(one, by_hand)
+    with pytest.raises(ValueError, match="plan: made for another size"):
+        sl.render(one, sl.plan(one, SIZE), (8, 8))
+    assert sl.render(one, sl.plan(one, (8, 6)), (8, 6)).radiance.shape == (6, 8, 3)
+
+
+@pytest.mark.parametrize("seed", [-1, 2**64])
+def test_seeds_out_of_range_are_refused(seed):
+    with pytest.raises(ValueError, match="seed"):
+        sl.render(Scene([GROUND, BOX], AREA, CAMERA), size=(8, 8), seed=seed)
+
+
+def test_warns_where_single_precision_loses_the_scene():
+    away, aside = np.array([1e8, 0, 0]), np.array([2, 3, 5])
+    camera = Camera(tuple(away + aside), tuple(away))
+    far = Scene(Instance(sl.mesh.box(), sl.transform.translate(away)), AREA, camera)
+    for f in (sl.plan, sl.render):
+        with pytest.warns(RuntimeWarning, match="float32 loses its shape") as caught:
+            f(far, size=(8, 8))
+        assert [w.filename for w in caught] == [__file__]
+    with pytest.warns(RuntimeWarning, match="float32 loses its shape") as caught:
+        sl.pathtrace.path_trace(far, (4, 4), samples=1)
+    assert caught[0].filename == __file__
+    with warnings.catch_warnings():
+        warnings.simplefilter("error")
+        sl.pathtrace.path_trace(far, (4, 4), samples=1, dtype=np.float64)
+        sl.render(Scene([GROUND, BOX], AREA, CAMERA), size=(8, 8))

@@ -6,7 +6,7 @@ import trimesh
 from shadelab.light import PointLight, RectLight
 from shadelab.mesh import Mesh, box, icosphere, plane
 from shadelab.scene import Camera, Instance, Material, Scene, default
-from shadelab.transform import project, rotate_axis, translate
+from shadelab.transform import project, rotate_axis, scale, translate
 
 
 def test_rays_go_through_the_centres_of_their_pixels():
@@ -104,3 +104,11 @@ def test_the_default_scene_is_closed_lit_and_framed():
     light = scene.lights[0]
     assert np.dot(np.cross(light.edge_u, light.edge_v), -np.asarray(light.center)) > 0
     assert default().flatten().positions.tobytes() == flat.positions.tobytes()
+
+
+def test_flattened_instances_have_finite_normals():
+    flat = Scene(Instance(box(), scale([1.0, 0.0, 1.0]))).flatten(np.float64)
+    length = np.linalg.norm(flat.normals, axis=-1)
+    assert np.isfinite(flat.normals).all()
+    assert np.all(np.isclose(length, 1) | (length == 0)) and (length > 0).any()
+    assert not Scene(Instance(box(), scale([0.0, 0.0, 0.0]))).flatten().normals.any()

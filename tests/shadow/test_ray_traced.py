@@ -125,3 +125,11 @@ def test_errors_name_the_argument(scenes):
         sl.shadow.ray_traced(bvh, [0, 0, 0], None, None)
     with pytest.raises(ValueError, match="ignore_face"):
         sl.shadow.ray_traced(bvh, [[0, 0, 0]], None, light, ignore_face=[1, 2])
+
+
+@pytest.mark.parametrize("face", [-2, 2, 2**32])
+def test_ignored_faces_are_faces(scenes, face):
+    p, f = scenes.quad(0.0, (-1, 1), (-1, 1))
+    bvh = sl.accel.BVH(p, f)
+    with pytest.raises(ValueError, match="ignore_face: expected -1 or a face below 2"):
+        sl.shadow.ray_traced(bvh, [0.0, -1, 0], None, scenes.rect_light(), ignore_face=face)

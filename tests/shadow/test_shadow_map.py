@@ -132,3 +132,36 @@ def test_errors_name_the_argument(scenes):
         sl.shadow.ShadowMap(np.ones((2, 2)), "perspective", [0, 4, 0], np.eye(3), [1, 1, -1, 1], 1, 2)
     with pytest.raises(ValueError, match="depth: expected shape"):
         sl.shadow.ShadowMap(np.ones(4), "perspective", [0, 4, 0], np.eye(3), [-1, 1, -1, 1], 1, 2)
+
+
+@pytest.mark.parametrize("kind", KINDS)
+@pytest.mark.filterwarnings("error")
+def test_what_is_not_finite(scenes, kind):
+    p, f = scenes.quad(0.0, (-1, 1), (-1, 1))
+    light = scenes.lights()[kind]
+    for bad in (np.nan, np.inf):
+        broken = np.array(p)
+        broken[0, 1] = bad
+        with pytest.raises(ValueError, match="positions: vertex 0 is not finite"):
+            sl.shadow.shadow_map(broken, f, light, 8)
+        some = sl.shadow.shadow_map(p, f, light, 8, receivers=[[bad, 0, 0], [0.1, 0, 0.1], [0.5, -1, 0.4]])
+        alone = sl.shadow.shadow_map(p, f, light, 8, receivers=[[0.1, 0, 0.1], [0.5, -1, 0.4]])
+        assert np.array_equal(some.depth, alone.depth)
+        none = sl.shadow.shadow_map(p, f, light, 8, receivers=[[bad, 0, 0]])
+        assert np.array_equal(none.depth, sl.shadow.shadow_map(p, f, light, 8).depth)
+
+
+def test_maps_that_are_none_are_refused():
+    def made(depth=((1.0, np.inf),), kind="perspective", frame=((1, 0, 0), (0, 1, 0), (0, 0, 1)), near=1.0, far=2.0):
+        return sl.shadow.ShadowMap(depth, kind, [0, 4, 0], frame, [-1, 1, -1, 1], near, far)
+
+    made(), made(near=0.0, far=0.0), made(kind="orthographic", near=-1.0)
+    for wrong, name in (
+        ({"depth": [[1.0, np.nan]]}, "depth"),
+        ({"frame": 2 * np.eye(3)}, "frame"),
+        ({"frame": [[1, 0, 0], [1, 0, 0], [0, 0, 1]]}, "frame"),
+        ({"near": -1.0}, "near"),
+        ({"near": 3.0}, "far"),
+    ):
+        with pytest.raises(ValueError, match=name):
+            made(**wrong)
