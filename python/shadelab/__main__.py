@@ -41,14 +41,16 @@ def _positive(text: str) -> float:
     return value
 
 
-def _count(low: int) -> Any:
+def _count(low: int, high: int | None = None) -> Any:
+    bound = f"at least {low}" if high is None else f"from {low} to {high}"
+
     def parse(text: str) -> int:
         try:
             value = int(text)
         except ValueError:
             value = low - 1
-        if value < low:
-            raise argparse.ArgumentTypeError(f"expected an integer, at least {low}, got {text!r}")
+        if value < low or (high is not None and value > high):
+            raise argparse.ArgumentTypeError(f"expected an integer, {bound}, got {text!r}")
         return value
 
     return parse
@@ -65,9 +67,9 @@ def _parser() -> argparse.ArgumentParser:
     bound.add_argument("--max-error", type=_positive, help="choose the cheapest that keeps this error (default: 0.02)")
     bound.add_argument("--budget-ms", type=_positive, help="choose the most accurate within these milliseconds a frame")
     study.add_argument("--size", type=_size, help="of the pictures, such as 1280x720 (default: the question's own)")
-    study.add_argument("--threads", type=_count(1), help="threads to measure with (default: one a core)")
+    study.add_argument("--threads", type=_count(1, 4096), help="threads to measure with (default: one a core)")
     study.add_argument("--out", type=Path, default=Path("shadelab-report"), help="where to (default: shadelab-report)")
-    study.add_argument("--seed", type=_count(0), default=0, help="of everything random (default: 0)")
+    study.add_argument("--seed", type=_count(0, 2**64 - 1), default=0, help="of everything random (default: 0)")
     study.add_argument("--no-cache", action="store_true", help="neither read nor keep references")
     study.set_defaults(run=_study)
 
@@ -77,8 +79,8 @@ def _parser() -> argparse.ArgumentParser:
     render.add_argument("--reference", action="store_true", help="path trace instead")
     render.add_argument("--samples", type=_count(1), default=64, help="paths a pixel of the reference (default: 64)")
     render.add_argument("--size", type=_size, default=(1280, 720), help="of the picture (default: 1280x720)")
-    render.add_argument("--threads", type=_count(1), help="threads to use (default: one a core)")
-    render.add_argument("--seed", type=_count(0), default=0, help="of everything random (default: 0)")
+    render.add_argument("--threads", type=_count(1, 4096), help="threads to use (default: one a core)")
+    render.add_argument("--seed", type=_count(0, 2**64 - 1), default=0, help="of everything random (default: 0)")
     render.set_defaults(run=_render)
 
     techniques = commands.add_parser("techniques", help="what there is, by chapter, with its source")

@@ -5,6 +5,7 @@ Public through `shadelab.scene`.
 
 from __future__ import annotations
 
+import json
 import math
 import os
 from pathlib import Path
@@ -25,6 +26,9 @@ __all__ = ["load", "load_mesh"]
 
 FORMATS = (".obj", ".ply", ".stl", ".glb", ".gltf")
 _CREASE = math.radians(40)
+
+_FARTHEST = 1e18
+"""Coordinates may reach this far: their squares are still numbers in float32."""
 
 
 def load(path: str | os.PathLike[str], *, stage: bool = True) -> Scene:
@@ -47,10 +51,10 @@ def load(path: str | os.PathLike[str], *, stage: bool = True) -> Scene:
     ------
     ImportError
         If trimesh is not installed (``pip install 'shadelab[io]'``).
-    FileNotFoundError
-        If there is no such file.
+    FileNotFoundError, IsADirectoryError
+        If there is no such file, or it is a directory.
     ValueError
-        If the format is not known, the file is broken, or holds no triangles.
+        If the format is not known, the file is broken, or holds no triangles, or none that has a size.
 
     Notes
     -----
@@ -73,7 +77,7 @@ def load(path: str | os.PathLike[str], *, stage: bool = True) -> Scene:
 
     bounds = Scene(things).bounds
     low, high = bounds
-    center, radius = (low + high) / 2, float(np.linalg.norm(high - low)) / 2
+    center, radius = (low + high) / 2, math.hypot(*(high - low).tolist()) / 2
     floor = np.array([center[0], low[1], center[2]])
     ground = Material((0.62, 0.6, 0.56), roughness=0.9, name="ground")
     things.append(Instance(_mesh.plane(8 * radius), transform.translate(floor), ground))
@@ -129,6 +133,8 @@ def _instances(path: Path) -> list[Instance]:
 
     if path.suffix.lower() not in FORMATS:
         raise ValueError(f"{path}: unknown format {path.suffix!r}; expected one of {', '.join(FORMATS)}")
+    if path.is_dir():
+        raise IsADirectoryError(f"{path}: is a directory")
     if not path.is_file():
         raise FileNotFoundError(f"{path}: no such file")
     try:
@@ -137,6 +143,8 @@ def _instances(path: Path) -> list[Instance]:
         raise ImportError("loading models needs trimesh: pip install 'shadelab[io]'") from None
     linear = path.suffix.lower() in (".glb", ".gltf")
     try:
+        if path.suffix.lower() == ".gltf" and not isinstance(json.loads(path.read_bytes()), dict):
+            raise ValueError("it holds no JSON object")
         loaded = trimesh.load_scene(path, process=False)
         made = []
         for node in loaded.graph.nodes_geometry:
@@ -146,17 +154,45 @@ def _instances(path: Path) -> list[Instance]:
                 made.append(Instance(*_mesh_of(geometry, matrix, linear)))
     # Whatever a parser stumbles over in a broken file is the file's error.
     except Exception as error:
-        reason = str(error).strip().split("\n")[0] or type(error).__name__
-        raise ValueError(f"{path}: cannot be read as {path.suffix[1:].upper()}: {reason}") from error
+        raise ValueError(f"{path}: cannot be read as {path.suffix[1:].upper()}: {_reason(error)}") from error
     if not made:
         raise ValueError(f"{path}: holds no triangles")
+    bounds = np.stack([i.world().bounds for i in made])
+    if not (bounds[:, 0].min(0) < bounds[:, 1].max(0)).any():
+        raise ValueError(f"{path}: all vertices are at one point")
     return made
+
+
+def _reason(error: Exception) -> str:
+    """What is wrong with a file, of what its parser stumbled over."""
+    text = str(error).strip().split("\n")[0]
+    if isinstance(error, json.JSONDecodeError | UnicodeDecodeError):
+        return f"it is not JSON ({text})"
+    if isinstance(error, FileNotFoundError):
+        return f"a file that it names is missing ({error.filename or text})"
+    if isinstance(error, KeyError):
+        return f"it lacks {text}"
+    if isinstance(error, IndexError):
+        return "it ends too early, or an index in it is out of range"
+    if isinstance(error, AttributeError | TypeError | NameError):
+        return "its structure is not that of the format"
+    return text or type(error).__name__
+
+
+def _check_reach(positions: NDArray[np.float64], matrix: Any) -> None:
+    """Refuse coordinates, in the mesh or the world, whose squares would overflow."""
+    with np.errstate(all="ignore"):
+        world = positions @ np.asarray(matrix, np.float64)[:3, :3].T + np.asarray(matrix, np.float64)[:3, 3]
+        reach = max(float(np.abs(positions).max(initial=0.0)), float(np.abs(world).max(initial=0.0)))
+    if reach > _FARTHEST:
+        raise ValueError(f"expected coordinates up to {_FARTHEST:g}, got {reach:g}")
 
 
 def _mesh_of(geometry: Any, matrix: Any, linear: bool) -> tuple[Mesh, Any, Material]:
     """Mesh, transform and material of one of trimesh's geometries."""
     positions = np.asarray(geometry.vertices, np.float64)
     faces = np.asarray(geometry.faces)
+    _check_reach(positions, matrix)
     visual = geometry.visual
     uvs = getattr(visual, "uv", None)
     uvs = None if uvs is None or len(uvs) != len(positions) else np.nan_to_num(np.asarray(uvs, np.float64))[:, :2]

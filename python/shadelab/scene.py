@@ -395,8 +395,11 @@ def _optional(
 def fit_camera(bounds: ArrayLike, direction: ArrayLike = (0.55, 0.5, 1.0), fov_y: float = math.pi / 5) -> Camera:
     """The camera that sees the sphere around a box from a direction."""
     low, high = np.asarray(bounds, np.float64)
-    center, radius = (low + high) / 2, float(np.linalg.norm(high - low)) / 2
+    # Halved first, and by hypot: neither the middle nor the radius overflows where the box itself does not.
+    center, radius = low / 2 + high / 2, math.hypot(*(high / 2 - low / 2).tolist())
     radius = radius or 1.0
+    if radius > 1e300:
+        raise ValueError(f"bounds: expected a box that a camera can stand before, got a radius of {radius:g}")
     away = np.asarray(direction, np.float64)
     eye = center + away / np.linalg.norm(away) * radius / math.sin(fov_y / 2)
     return Camera(tuple(eye.tolist()), tuple(center.tolist()), fov_y=fov_y)

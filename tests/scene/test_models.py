@@ -94,6 +94,13 @@ def test_a_model_is_set_on_the_ground_under_a_light(ball, tmp_path):
     assert 0 <= hit.face < len(ball.faces)
 
 
+NO_Y = b"ply\nformat ascii 1.0\nelement vertex 3\nproperty float x\nend_header\n1\n2\n3\n"
+NO_BUFFER = b"""{"asset": {"version": "2.0"}, "buffers": [{"uri": "absent.bin", "byteLength": 36}],
+"bufferViews": [{"buffer": 0, "byteLength": 36}], "nodes": [{"mesh": 0}], "scenes": [{"nodes": [0]}],
+"accessors": [{"bufferView": 0, "componentType": 5126, "count": 3, "type": "VEC3"}],
+"meshes": [{"primitives": [{"attributes": {"POSITION": 0}}]}]}"""
+
+
 @pytest.mark.parametrize(
     ("name", "content", "error", "match"),
     [
@@ -106,7 +113,13 @@ def test_a_model_is_set_on_the_ground_under_a_light(ball, tmp_path):
         ("points.obj", b"v 0 0 0\nv 1 0 0\n", ValueError, "points.obj"),
         ("index.obj", b"v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 9\n", ValueError, "index.obj"),
         ("nan.obj", b"v 0 0 0\nv nan 0 0\nv 0 1 0\nf 1 2 3\n", ValueError, "nan.obj"),
-        ("broken.gltf", b"{", ValueError, "broken.gltf: cannot be read as GLTF"),
+        ("broken.gltf", b"{", ValueError, "broken.gltf: cannot be read as GLTF: it is not JSON"),
+        ("l.gltf", b"[]", ValueError, "l.gltf: cannot be read as GLTF: it holds no JSON object"),
+        ("m.gltf", NO_BUFFER, ValueError, r"m.gltf: .* a file that it names is missing \(absent.bin\)"),
+        ("short.ply", b"ply\nformat ascii 1.0\nelement vertex 3\n", ValueError, "short.ply: .* ends too early"),
+        ("y.ply", NO_Y, ValueError, "y.ply: cannot be read as PLY: it lacks 'y'"),
+        ("same.obj", b"v 1 1 1\nv 1 1 1\nv 1 1 1\nf 1 2 3\n", ValueError, "same.obj: all vertices are at one point"),
+        ("far.obj", b"v 1e300 0 0\nv 0 1 0\nv 0 0 1\nf 1 2 3\n", ValueError, "far.obj: .* up to 1e.18, got 1e.300"),
     ],
 )
 def test_what_is_no_model_gives_one_clear_line(name, content, error, match, tmp_path):
@@ -115,3 +128,9 @@ def test_what_is_no_model_gives_one_clear_line(name, content, error, match, tmp_
     with pytest.raises(error, match=match) as caught:
         load(tmp_path / name)
     assert "\n" not in str(caught.value)
+
+
+def test_a_directory_is_no_model(tmp_path):
+    (tmp_path / "d.obj").mkdir()
+    with pytest.raises(IsADirectoryError, match=r"d\.obj: is a directory"):
+        load(tmp_path / "d.obj")

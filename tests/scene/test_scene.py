@@ -5,7 +5,7 @@ import pytest
 import trimesh
 from shadelab.light import PointLight, RectLight
 from shadelab.mesh import Mesh, box, icosphere, plane
-from shadelab.scene import Camera, Instance, Material, Scene, default
+from shadelab.scene import Camera, Instance, Material, Scene, default, fit_camera
 from shadelab.transform import project, rotate_axis, scale, translate
 
 
@@ -30,6 +30,14 @@ def test_a_fitted_camera_sees_everything():
         camera = Scene(thing).camera
         pixels = project(thing.positions[:3], camera.projection(1.0) @ camera.view(), (100, 100))
         assert (pixels[:, :2] >= 0).all() and (pixels[:, :2] <= 100).all()
+
+
+def test_a_camera_is_fitted_to_boxes_of_any_size():
+    for size in (1e-200, 1e200):
+        camera = fit_camera([[-size] * 3, [size] * 3])
+        assert np.isfinite(camera.eye).all() and camera.eye[2] > size
+    with pytest.raises(ValueError, match="bounds: expected a box"):
+        fit_camera([[-1e308] * 3, [1e308] * 3])
 
 
 @pytest.mark.parametrize("dtype", [np.float32, np.float64])

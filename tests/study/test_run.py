@@ -130,6 +130,40 @@ def test_wrong_candidates_are_named():
         study.run("hard shadows")
 
 
+@pytest.mark.parametrize("answer", [None, "text", [[1.0], [1.0, 2.0]], np.zeros((64, 96), complex)])
+def test_what_is_no_picture_is_refused_by_name(answer):
+    with pytest.raises((TypeError, ValueError), match=r"^mine: "):
+        study.run(toy.question(candidates=[Candidate("mine", lambda inputs, _: answer)]), **FAST)
+
+
+def test_a_study_of_nothing_is_refused():
+    for given in ({"techniques": []}, {"views": {}}, {"views": []}, {"scene": {}}):
+        with pytest.raises(ValueError, match=f"{next(iter(given))}: expected at least one"):
+            study.run(toy.question(), **given, **FAST)
+    nowhere = study.Mask("nowhere", lambda r, inputs: np.zeros(r.shape, bool))
+    with pytest.raises(ValueError, match="nothing to measure in 'ramp': the mask selects no pixel"):
+        study.run(toy.question(mask=nowhere), **FAST)
+
+
+@pytest.mark.parametrize(
+    "given", [{"size": "x"}, {"size": 5}, {"size": (1, 2, 3)}, {"views": 5}, {"techniques": 5}, {"threads": 0}]
+)
+def test_wrong_arguments_are_named(given):
+    with pytest.raises((TypeError, ValueError), match=f"^{next(iter(given))}: expected"):
+        study.run(toy.question(), **given, **FAST)
+
+
+def test_wrong_bounds_and_pictures_are_named():
+    result = study.run(toy.question(), techniques=["biased"], **FAST)
+    for name in ("max_error", "budget_ms"):
+        with pytest.raises(TypeError, match=f"{name}: expected a positive number, got 'x'"):
+            result.pick(**{name: "x"})
+    with pytest.raises(TypeError, match="path: expected a path"):
+        External(5, 1)
+    with pytest.raises(TypeError, match="ms: expected a number"):
+        External("a.png", "1")
+
+
 def test_not_finite_answers_are_counted_and_never_chosen():
     def broken(inputs, prepared):
         value = toy.truth(inputs)

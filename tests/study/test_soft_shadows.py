@@ -120,6 +120,47 @@ def test_a_plan_follows_the_evidence(measured):
 def test_point_lights_leave_area_techniques_out():
     base = _shadow_scenes.SCENES["contact"]()
     light = sl.light.PointLight((2.0, 4.0, 1.0), (30.0, 30.0, 30.0))
-    scene = sl.scene.Scene(base.instances, lights=(light,), camera=base.camera)
+    scene = sl.scene.Scene(base.instances, lights=(light, *base.lights), camera=base.camera)
     result = study.run("soft shadows", scene, **FAST)
     assert not errors(result, "pcss") and "pcss: it needs area lights" in result.cases[0].left_out[0]
+
+
+def test_scenes_with_nothing_to_measure_are_refused_by_name():
+    base = _shadow_scenes.SCENES["contact"]()
+    light = sl.light.PointLight((2.0, 4.0, 1.0), (30.0, 30.0, 30.0))
+    for things, lights, expected in (
+        (base.instances, (light,), "nothing to measure in 'mine': no pixel is in penumbra"),
+        ((), base.lights, "at least one instance with a face in 'mine'"),
+        (base.instances, (), "at least one light in 'mine'"),
+    ):
+        scene = sl.scene.Scene(things, lights=lights, camera=base.camera)
+        with pytest.raises(ValueError, match=expected):
+            study.run("soft shadows", {"mine": scene}, **FAST)
+
+
+@pytest.mark.parametrize("answer", [np.zeros((3, 4)), None])
+def test_answers_that_are_no_lit_fractions_are_refused_by_name(answer):
+    def mine(inputs):
+        return answer
+
+    with pytest.raises((TypeError, ValueError), match=r"mine: expected .*shape \("):
+        study.run("soft shadows", "contact", candidates=[mine], techniques=[], **FAST)
+
+
+def test_a_study_and_its_report_do_without_flip_where_it_is_not_defined(monkeypatch, tmp_path):
+    def black(*pictures, dynamic_range):
+        raise ValueError("reference: expected a picture that is not black")
+
+    monkeypatch.setattr(sl.image, "flip_error", black)
+    result = study.run("soft shadows", "contact", techniques=["hard"], **FAST)
+    assert np.isnan(result.records[0].also["FLIP"]) and "FLIP" in str(result) and "–" in str(result)
+    assert result.report(tmp_path, max_error=0.5).is_file()
+
+
+def test_an_answer_of_nothing_but_nan_is_counted_and_reported(tmp_path):
+    def nans(inputs):
+        return np.full(inputs.unshadowed.shape[:2], np.nan, np.float32)
+
+    result = study.run("soft shadows", "contact", candidates=[nans], techniques=["hard"], **FAST)
+    assert next(r for r in result.records if r.technique == "nans").strays > 0
+    assert result.report(tmp_path, max_error=0.5).is_file()

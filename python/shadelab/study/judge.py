@@ -78,11 +78,22 @@ class Judge:
 
     def value(self, s: Setting, answer: Any) -> Array:
         """A setting's answer as it is judged."""
-        value = np.asarray(self.question.compose(self.inputs, answer))
-        if value.shape != self.halves.a.shape:
-            raise ValueError(
-                f"{s.candidate.name}: expected an answer of shape {self.halves.a.shape}, got {value.shape}"
-            )
+        return self.composed(s, self.inputs, answer)
+
+    def composed(self, s: Setting, inputs: Any, answer: Any) -> Array:
+        """An answer to some inputs as it is judged; what is not of the reference's shape is refused."""
+        name, shape = s.candidate.name, self.halves.a.shape
+        if answer is None:
+            raise TypeError(f"{name}: expected an answer of shape {shape}, got None")
+        try:
+            value = np.asarray(self.question.compose(inputs, answer))
+        except (TypeError, ValueError) as error:
+            kind = TypeError if isinstance(error, TypeError) else ValueError
+            raise kind(f"{name}: {error}") from error
+        if value.shape != shape:
+            raise ValueError(f"{name}: expected an answer of shape {shape}, got {value.shape}")
+        if value.dtype.kind not in "fiub":
+            raise TypeError(f"{name}: expected real numbers, got dtype {value.dtype}")
         return value
 
     def sums(self, value: Array) -> Array:
@@ -184,7 +195,7 @@ class Judge:
 def precision(judge: Judge, s: Setting, doubles: Any, seed: int) -> float:
     """How far the answer is from that of the same technique, with the same seed, in double."""
     question = judge.question
-    wide = np.asarray(question.compose(doubles, s.answer(doubles, repeat_seed(seed, 0))[0]))
+    wide = judge.composed(s, doubles, s.answer(doubles, repeat_seed(seed, 0))[0])
     apart = question.metric.residual(judge.value(s, s.answers[0]), wide, judge.inputs)[judge.mask]
     if not apart.size:
         return 0.0

@@ -136,7 +136,7 @@ def run(
         question,
         _settings(question, candidates, techniques),
         [c for c in candidates if isinstance(c, External)],
-        _arrays.count("seed", seed),
+        _arrays.count("seed", seed, 0, (1 << 64) - 1),
         _arrays.count("rounds", rounds, 1),
         _arrays.number("patience", patience, 0.0),
         _arrays.number("fraction", fraction, above=0.0),
@@ -144,8 +144,11 @@ def run(
         causes,
         cache,
     )
-    width, height = size if size is not None else question.size
-    size = (_arrays.count("size", width, 1), _arrays.count("size", height, 1))
+    if not plan.settings and not plan.external:
+        raise ValueError("techniques: expected at least one, or candidates beside")
+    size = _size(question.size if size is None else size)
+    if threads is not None:
+        threads = _arrays.count("threads", threads, 1, 4096)
     before = threads_now()
     try:
         if threads is not None:
@@ -156,12 +159,23 @@ def run(
             set_threads(before)
 
 
+def _size(size: Any) -> tuple[int, int]:
+    if isinstance(size, str) or not isinstance(size, Iterable):
+        raise TypeError(f"size: expected (width, height), got {size!r}")
+    sides = list(size)
+    if len(sides) != 2:
+        raise ValueError(f"size: expected (width, height), got {len(sides)} values")
+    return _arrays.count("size", sides[0], 1), _arrays.count("size", sides[1], 1)
+
+
 def _settings(
     question: Question, more: Iterable[Any], techniques: Iterable[str] | None
 ) -> list[tuple[Candidate, dict[str, Any]]]:
     """Every setting of every candidate, the user's among them."""
     chosen = list(question.candidates)
     if techniques is not None:
+        if isinstance(techniques, str) or not isinstance(techniques, Iterable):
+            raise TypeError(f"techniques: expected a list of names, got {techniques!r}")
         wanted, known = list(techniques), [c.name for c in chosen]
         for name in wanted:
             if name not in known:
@@ -189,6 +203,13 @@ def _cases(
         scenes = {scene: question.scenes[scene]}
     else:
         scenes = dict(scene) if isinstance(scene, Mapping) else {"your scene": scene}
+    if not scenes:
+        raise ValueError("scene: expected at least one")
+    if views is not None:
+        if isinstance(views, Iterable) and not list(views):
+            raise ValueError("views: expected at least one")
+        if not isinstance(views, Mapping):
+            raise TypeError(f"views: expected a mapping of names to views, got {type(views).__name__}")
     for name, source in scenes.items():
         made = source() if callable(source) else source
         for view_name, view in (views if views is not None else question.views(name, made)).items():
@@ -256,6 +277,8 @@ def _measure(
     name = references.key(question, case) if plan.cache else None
     halves = (references.load(name) if name else None) or references.first(question, inputs, case.seed)
     judge = Judge(question, inputs, halves)
+    if not judge.mask.any():
+        raise ValueError(f"scene: nothing to measure in {case.name!r}: {question.mask.nothing}")
     steps.step()
 
     # Answer once with every setting; this warms up what the timing then finds warm.
@@ -270,6 +293,7 @@ def _measure(
     for s in settings:
         for repeat in range(2 if s.candidate.seeded and plan.causes else 1):
             answer, *seconds = s.answer(inputs, repeat_seed(case.seed, repeat))
+            judge.value(s, answer)
             s.answers.append(np.asarray(answer))
             s.seconds = sum(seconds)
         if doubles is not None and s.seconds < plan.patience:

@@ -59,11 +59,15 @@ class Metric:
 
 @dataclass(frozen=True)
 class Mask:
-    """Where a technique matters: `select(reference, inputs)` gives a boolean for each element (None: everywhere)."""
+    """Where a technique matters: `select(reference, inputs)` gives a boolean for each element (None: everywhere).
+
+    `nothing` says in a clause what is missing where it selects none.
+    """
 
     name: str = "everywhere"
     select: Callable[[Array, Any], Array] | None = None
     about: str = ""
+    nothing: str = "the mask selects no pixel"
 
 
 @dataclass(frozen=True)
@@ -159,6 +163,14 @@ class External:
     name: str = ""
 
     def __post_init__(self) -> None:
+        paths = list(self.path.values()) if isinstance(self.path, Mapping) else [self.path]
+        if not paths:
+            raise ValueError("path: expected at least one picture")
+        for path in paths:
+            if not isinstance(path, str | Path):
+                raise TypeError(f"path: expected a path, or paths by view or scene, got {type(path).__name__}")
+        if isinstance(self.ms, bool) or not isinstance(self.ms, int | float | np.number):
+            raise TypeError(f"ms: expected a number, got {type(self.ms).__name__}")
         if not np.isfinite(self.ms) or self.ms < 0:
             raise ValueError(f"ms: expected a finite number of milliseconds, at least 0, got {self.ms}")
 

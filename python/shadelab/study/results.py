@@ -133,12 +133,14 @@ class Study:
 
         Raises
         ------
-        ValueError
+        TypeError, ValueError
             If neither bound is given, or a bound is not a positive number.
         NothingQualifies
             If no setting qualifies; the message names the one that comes nearest. It is a ValueError.
         """
         for name, bound in (("max_error", max_error), ("budget_ms", budget_ms)):
+            if bound is not None and (isinstance(bound, bool) or not isinstance(bound, int | float | np.number)):
+                raise TypeError(f"{name}: expected a positive number, got {bound!r}")
             if bound is not None and not (math.isfinite(bound) and bound > 0):
                 raise ValueError(f"{name}: expected a positive number, got {bound}")
         if max_error is None and budget_ms is None:
@@ -203,7 +205,8 @@ class Study:
         # NaN, where an answer was not finite, is the worst of all.
         worst = max(group, key=lambda r: math.inf if math.isnan(r.error.value) else r.error.value)
         slowest = max(group, key=lambda r: r.ms.value)
-        also = {k: max(r.also.get(k, math.nan) for r in group) for k in worst.also}
+        beside = {k: [v for r in group if math.isfinite(v := r.also.get(k, math.nan))] for k in worst.also}
+        also = {k: max(values, default=math.nan) for k, values in beside.items()}
         counters = {k: max(r.counters.get(k, 0.0) for r in group) for r in group for k in r.counters}
         return Summary(
             worst.technique,

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Any
@@ -11,6 +12,7 @@ from numpy.typing import NDArray
 
 from ... import color, image, light, pathtrace, renderer, shadow
 from ...accel import BVH
+from ...scene import Scene
 from ..question import Candidate, Case, Mask, Metric, MonteCarlo, Question
 from ._shadow_scenes import SCENES, views
 
@@ -61,7 +63,13 @@ class Inputs:
 
 def _setup(case: Case) -> Inputs:
     """The G-buffer by rays through pixel centres, and the light that would arrive with nothing in between."""
+    if not isinstance(case.scene, Scene):
+        raise TypeError(f"scene: expected {case.scene_name!r} to be a Scene, got {type(case.scene).__name__}")
     arrays = case.scene.flatten(np.float32)
+    if not len(arrays.faces):
+        raise ValueError(f"scene: expected at least one instance with a face in {case.scene_name!r}")
+    if not case.scene.lights:
+        raise ValueError(f"scene: expected at least one light in {case.scene_name!r}")
     camera = case.view if case.view is not None else case.scene.camera
     origins, directions = camera.rays(case.size, dtype=np.float32)
     bvh = BVH(arrays.positions, arrays.faces)
@@ -126,7 +134,12 @@ def _estimate(inputs: Inputs, samples: int, seed: int, start: int, where: Array 
 
 def _compose(inputs: Inputs, lit: Array) -> Array:
     """Radiance: what would arrive unshadowed, times the lit fraction, light by light."""
-    return inputs.spread(np.einsum("ln,lnc->nc", np.asarray(lit), inputs.unshadowed))
+    given, expected = np.asarray(lit), inputs.unshadowed.shape[:2]
+    if given.shape != expected:
+        raise ValueError(f"expected lit fractions of shape {expected} (lights, receivers), got {given.shape}")
+    if given.dtype.kind not in "fiub":
+        raise TypeError(f"expected lit fractions of shape {expected} as numbers, got dtype {given.dtype}")
+    return inputs.spread(np.einsum("ln,lnc->nc", given, inputs.unshadowed))
 
 
 def _residual(value: Array, reference: Array, inputs: Inputs) -> Array:
@@ -202,10 +215,14 @@ def _counters(technique: str) -> Any:
     return count
 
 
-def _flip(value: Array, reference: Array, inputs: Inputs) -> Array:
+def _flip(value: Array, reference: Array, inputs: Inputs) -> Array | float:
     """LDR-FLIP of the pictures as shown, in [0, 1]: the difference that one sees when flipping between them."""
     shown = [color.encode_transfer(np.clip(p * inputs.exposure, 0, 1)) for p in (value, reference)]
-    return image.flip_error(*shown, dynamic_range="ldr").map
+    try:
+        return image.flip_error(*shown, dynamic_range="ldr").map
+    except ValueError:
+        # FLIP is not defined for a black reference, nor for what is not finite: there is no figure, and no map.
+        return math.nan
 
 
 def _rmse(value: Array, reference: Array, inputs: Inputs) -> float:
@@ -290,7 +307,7 @@ def question() -> Question:
         MonteCarlo(_estimate, first=16, most=1 << 14),
         Metric("rms error of direct light over unshadowed light", _residual, about=_line(_METRIC_ABOUT)),
         _candidates(),
-        Mask("penumbrae and a 60th of the height around", _penumbrae, _line(_MASK_ABOUT)),
+        Mask("penumbrae and a 60th of the height around", _penumbrae, _line(_MASK_ABOUT), "no pixel is in penumbra"),
         views,
         _setup,
         _compose,
