@@ -19,7 +19,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from . import _arrays, color, light, raster, shadow
+from . import _arrays, color, light, mesh, raster, shadow
 from ._arrays import Floats
 from .accel import BVH
 
@@ -532,29 +532,27 @@ def _g_buffer(arrays: Any, camera: Any, size: tuple[int, int]) -> _Seen:
     matrix = camera.projection(size[0] / size[1], depth="reversed") @ camera.view()
     positions = np.concatenate([arrays.positions, np.ones((len(arrays.positions), 1))], axis=-1)
     clip = (positions @ matrix.T).astype(np.float32)
-    drawn = raster.rasterize(clip, arrays.faces, size, depth="reversed")
+    drawn = raster.g_buffer(
+        clip,
+        arrays.faces,
+        arrays.positions,
+        size,
+        normals=arrays.normals,
+        material_ids=arrays.material_ids,
+        depth="reversed",
+    )
     covered = drawn.face >= 0
-    face, u, v = drawn.face[covered], drawn.u[covered, None], drawn.v[covered, None]
-    corners = arrays.faces[face]
-
-    def mixed(values: Floats) -> Floats:
-        a, b, c = (values[corners[:, i]] for i in range(3))
-        return np.asarray((1 - u - v) * a + u * b + v * c)
-
-    points, shading = mixed(arrays.positions), mixed(arrays.normals)
-    a, b, c = (arrays.positions[arrays.faces[:, i]].astype(np.float64) for i in range(3))
-    of_face = np.cross(b - a, c - a)
-    of_face /= np.maximum(np.linalg.norm(of_face, axis=-1, keepdims=True), 1e-300)
-    geometric = of_face.astype(np.float32)[face]
-    length = np.linalg.norm(shading, axis=-1, keepdims=True)
-    shading = np.where(length > 0, shading / np.maximum(length, 1e-30), geometric)
+    face, points, shading = drawn.face[covered], drawn.position[covered], drawn.normal[covered]
+    geometric = np.nan_to_num(mesh.face_normals(arrays.positions, arrays.faces))[face]
+    shading = np.where(shading.any(-1, keepdims=True), shading, geometric)
     away = points - np.asarray(camera.eye, np.float32)
     geometric = np.where(np.einsum("ij,ij->i", geometric, away)[:, None] > 0, -geometric, geometric)
     shading = np.where(np.einsum("ij,ij->i", shading, geometric)[:, None] < 0, -shading, shading)
-    material = arrays.material_ids[face]
+    material = drawn.material[covered]
     base = arrays.base_color[material]
     if arrays.colors is not None:
-        base = base * mixed(arrays.colors)
+        where = raster.Raster(drawn.face, drawn.u, drawn.v, drawn.depth)
+        base = base * raster.interpolate(arrays.colors, arrays.faces, where)[covered]
     points, geometric, shading, base = (np.ascontiguousarray(x, np.float32) for x in (points, geometric, shading, base))
     return _Seen(drawn.face, covered, points, geometric, shading, base, material)
 
