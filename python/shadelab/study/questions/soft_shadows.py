@@ -231,7 +231,9 @@ def _rmse(value: Array, reference: Array, inputs: Inputs) -> float:
 
 
 def _display(inputs: Inputs, value: Array) -> Array:
-    shown = color.encode_transfer(np.clip(value * inputs.exposure, 0, 1))
+    shown = color.encode_transfer(np.clip(np.nan_to_num(value * inputs.exposure), 0, 1))
+    # What is not a number is shown as such, in a colour that no scene has.
+    shown[np.isnan(value).any(-1)] = (1, 0, 1)
     return (shown * 255 + 0.5).astype(np.uint8)
 
 
