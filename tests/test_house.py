@@ -14,8 +14,10 @@ CHAPTERS = (
 FOUNDATION = {"math", "parallel", "real", "simd", "vec"}
 
 RUST = sorted(p for p in (ROOT / "src").rglob("*.rs") if p.name != "tests.rs")
-KERNELS = [p for p in RUST if p.parent.name in CHAPTERS and p.parent.parent.name == "src"]
-FACES = sorted(p for p in (ROOT / "python/shadelab").glob("*.py") if p.stem in CHAPTERS)
+KERNELS = [p for p in RUST if p.relative_to(ROOT / "src").parts[0] in CHAPTERS]
+PACKAGE = ROOT / "python/shadelab"
+# A face is a file, or a package of files where a chapter has many techniques; so are the bindings.
+FACES = sorted(p for c in CHAPTERS if c != "study" for p in [*PACKAGE.glob(f"{c}.py"), *PACKAGE.glob(f"{c}/*.py")])
 STUDY = sorted((ROOT / "python/shadelab/study").rglob("*.py"))
 
 
@@ -29,25 +31,36 @@ def code(path):
     return re.sub(r"//[^\n]*", "", text)
 
 
+def chapter(path):
+    return path.relative_to(PACKAGE).parts[0].removesuffix(".py")
+
+
+def text_of(place):
+    """A file, or all files of the folder of that name."""
+    files = [place] if place.exists() else sorted(place.with_suffix("").glob("*"))
+    return "\n".join(f.read_text() for f in files if f.suffix == place.suffix)
+
+
 def python_imports(path):
     """Chapters that a Python file of the package imports, at any depth of the file."""
     found = set()
+    level = len(path.relative_to(PACKAGE).parts)
     for node in ast.walk(ast.parse(path.read_text())):
-        if isinstance(node, ast.ImportFrom) and node.level:
+        if isinstance(node, ast.ImportFrom) and node.level == level:
             found |= {node.module.split(".")[0]} if node.module else {a.name for a in node.names}
     return found & set(CHAPTERS)
 
 
 @pytest.mark.parametrize("path", KERNELS, ids=name)
 def test_kernels_use_only_chapters_above_them(path):
-    own = CHAPTERS.index(path.parent.name)
+    own = CHAPTERS.index(path.relative_to(ROOT / "src").parts[0])
     used = set(re.findall(r"\bcrate::(\w+)", code(path))) & set(CHAPTERS)
     assert all(CHAPTERS.index(c) <= own for c in used), used
 
 
 @pytest.mark.parametrize("path", FACES, ids=name)
 def test_faces_import_only_chapters_above_them(path):
-    own = CHAPTERS.index(path.stem)
+    own = CHAPTERS.index(chapter(path))
     used = python_imports(path)
     assert all(CHAPTERS.index(c) < own for c in used), used
 
@@ -78,7 +91,7 @@ def test_chapters_stand_in_reading_order():
 def techniques():
     """A chapter's public modules are its techniques; its parts are private or `pub(crate)`."""
     for path in KERNELS:
-        if path.name == "mod.rs":
+        if path.name == "mod.rs" and path.parent.parent.name == "src":
             for technique in re.findall(r"^pub mod (\w+);", path.read_text(), re.M):
                 yield pytest.param(path.parent.name, technique, id=f"{path.parent.name}.{technique}")
 
@@ -86,8 +99,8 @@ def techniques():
 @pytest.mark.parametrize(("chapter", "technique"), list(techniques()))
 def test_a_technique_has_its_four_places(chapter, technique):
     assert (ROOT / f"src/{chapter}/{technique}.rs").exists() or (ROOT / f"src/{chapter}/{technique}/mod.rs").exists()
-    assert re.search(rf"\b{technique}\b", (ROOT / f"src/python/{chapter}.rs").read_text())
-    assert (ROOT / f"python/shadelab/{chapter}.py").exists()
+    assert re.search(rf"\b{technique}\b", text_of(ROOT / f"src/python/{chapter}.rs"))
+    assert text_of(PACKAGE / f"{chapter}.py")
     assert (ROOT / f"tests/{chapter}/test_{technique}.py").exists()
 
 

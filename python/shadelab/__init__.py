@@ -37,30 +37,31 @@ study
 
 from __future__ import annotations
 
+import importlib
 from typing import TYPE_CHECKING, Any
 
-from . import (
-    accel,
-    brdf,
-    color,
-    geometry,
-    image,
-    light,
-    mesh,
-    pathtrace,
-    raster,
-    renderer,
-    sampling,
-    scene,
-    shadow,
-    transform,
-)
 from ._runtime import set_threads, simd, simd_level, simd_levels, threads
-from .renderer import plan, render
-from .scene import load
 
 if TYPE_CHECKING:
-    from . import study
+    from . import (
+        accel,
+        brdf,
+        color,
+        geometry,
+        image,
+        light,
+        mesh,
+        pathtrace,
+        raster,
+        renderer,
+        sampling,
+        scene,
+        shadow,
+        study,
+        transform,
+    )
+    from .renderer import plan, render
+    from .scene import load
 
 __all__ = [
     "accel",
@@ -89,10 +90,17 @@ __all__ = [
 ]
 
 
-def __getattr__(name: str) -> Any:
-    """`study` is imported when it is first asked for: most of what imports shadelab measures nothing."""
-    if name == "study":
-        import importlib
+_ELSEWHERE = {"load": "scene", "plan": "renderer", "render": "renderer"}
 
-        return importlib.import_module(".study", __name__)
+
+def __getattr__(name: str) -> Any:
+    """Chapters are imported when they are first asked for: an import costs what is used."""
+    if name in _ELSEWHERE:
+        return getattr(importlib.import_module(f".{_ELSEWHERE[name]}", __name__), name)
+    if name in __all__:
+        return importlib.import_module(f".{name}", __name__)
     raise AttributeError(f"module {__name__!r} has no attribute {name!r}")
+
+
+def __dir__() -> list[str]:
+    return sorted({*globals(), *__all__})

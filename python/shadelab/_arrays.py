@@ -23,6 +23,7 @@ __all__ = [
     "broadcast",
     "choice",
     "count",
+    "elementwise",
     "floats",
     "image",
     "indices",
@@ -138,6 +139,29 @@ def broadcast(
         full = array if array.shape[: array.ndim - k] == shape else np.broadcast_to(array, shape + tail)
         flat.append(np.require(full.reshape((size, *tail)), requirements=["C", "A"]))
     return shape, flat
+
+
+def elementwise(
+    kernel: Callable[..., None],
+    given: dict[str, tuple[ArrayLike, int]],
+    outputs: Sequence[int | tuple[int, DTypeLike]],
+    *options: Any,
+) -> tuple[NDArray[Any], ...]:
+    """Calls `kernel(*options, given, out)` on arguments of equal standing, broadcast, and gives new arrays.
+
+    `given` maps a name to (value, components), with 0 for numbers; `outputs` gives each result's components, with its
+    dtype where that is not the arguments' precision.
+    """
+    dtype = result_dtype(**{name: value for name, (value, _) in given.items()})
+    core = {
+        name: (vectors(name, value, n, dtype), 1) if n else (floats(name, value, dtype), 0)
+        for name, (value, n) in given.items()
+    }
+    shape, flat = broadcast(core)
+    kinds = [(o, dtype) if isinstance(o, int) else o for o in outputs]
+    out = tuple(np.empty((*shape, n) if n else shape, kind) for n, kind in kinds)
+    kernel(*options, flat, list(out))
+    return out
 
 
 def output(name: str, out: NDArray[Any] | None, shape: Sequence[int], dtype: DTypeLike) -> NDArray[Any]:

@@ -1,9 +1,9 @@
 //! Every ray against every triangle, by the rule that structures keep: a hit passes its triangle's own box, `t` is raised
 //! to the entry, the lowest face wins a tie. What a structure returns must equal this to the bit.
 
-use super::node::{BLOCK, Block};
+use super::block::{BLOCK, Block, leaf};
 use super::query::{Found, Rays};
-use super::{Hit, build, ray, single};
+use super::{Hit, bounds, ray};
 use crate::dispatch;
 use crate::parallel::{self, Interrupted, Watch};
 use crate::real::Real;
@@ -19,7 +19,7 @@ pub fn closest_hits<T: Real>(
     rays: &Rays<T>,
     found: Found<T>,
 ) -> Result<(), Interrupted> {
-    let bounds = build::scene_bounds(positions, faces);
+    let scene = bounds::scene_bounds(positions, faces);
     let blocks: Vec<Block<T>> = faces
         .chunks(BLOCK)
         .enumerate()
@@ -35,11 +35,11 @@ pub fn closest_hits<T: Real>(
     parallel::for_each(watch, found, rays_a_task, |first, mut found| {
         dispatch!(s => for i in 0..found.len() {
             let ray = rays.get(first + i);
-            let hit = match ray::ready(&bounds, &ray) {
+            let hit = match ray::ready(&scene, &ray) {
                 None => Hit::no_ray(),
                 Some((ready, heading)) => {
                     let mut hit = ready.unhit();
-                    single::leaf::<false, T, _>(s, &blocks, &ready, heading, ray.ignore_face, &mut hit);
+                    leaf::<false, T, _>(s, &blocks, &ready, heading, ray.ignore_face, &mut hit);
                     ready.finish(hit)
                 }
             };

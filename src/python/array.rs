@@ -40,6 +40,79 @@ macro_rules! real {
     };
 }
 
+/// Arrays as the face hands them over, in the order of a kernel's arguments.
+pub type Arrays<'py> = Vec<Bound<'py, PyAny>>;
+
+/// Items of an array: `[T; N]` for the numbers of a kernel's precision, `[i32; N]`, `[bool; N]` for others.
+pub trait Item: Copy + Send + Sync {
+    type Element: Element;
+    fn items<'a>(array: &'a In<Self::Element>) -> PyResult<&'a [Self]>;
+    fn items_mut<'a>(array: &'a mut Out<Self::Element>) -> PyResult<&'a mut [Self]>;
+}
+
+impl<E: Element + Copy + Send + Sync, const N: usize> Item for [E; N] {
+    type Element = E;
+    fn items<'a>(array: &'a In<E>) -> PyResult<&'a [Self]> {
+        array.items()
+    }
+    fn items_mut<'a>(array: &'a mut Out<E>) -> PyResult<&'a mut [Self]> {
+        array.items()
+    }
+}
+
+/// The body of a binding whose kernel works element by element on arrays of equal length:
+/// `elementwise!(py, given, out, |a: [T; 3], b: [T; 1]| -> (x: [T; 3], hit: [bool; 1]) { … (x, [hit]) })`. The first array
+/// given is of the precision `T`. The block is compiled inside the dispatch, within the parallel task; what it calls
+/// should be `#[inline(always)]`.
+#[macro_export]
+macro_rules! elementwise {
+    ($py:expr, $given:expr, $out:expr,
+     |$($x:ident: $xt:ty),+ $(,)?| -> ($($y:ident: $yt:ty),+ $(,)?) $body:block) => {
+        $crate::real!($crate::python::array::first(&$given)?, T => {
+            use $crate::python::array::{In, Item, Out, next, run};
+            let (mut given, mut out) = ($given.iter(), $out.iter());
+            $(let $x = In::<<$xt as Item>::Element>::of(stringify!($x), next(&mut given)?)?;)+
+            $(let mut $y = Out::<<$yt as Item>::Element>::of(stringify!($y), next(&mut out)?)?;)+
+            $(let $x = <$xt as Item>::items(&$x)?;)+
+            $(let $y = <$yt as Item>::items_mut(&mut $y)?;)+
+            $crate::python::array::same_length(&[$($x.len(),)+ $($y.len(),)+])?;
+            run($py, None, |watch| {
+                $crate::parallel::for_each(watch, ($($x,)+ $($y,)+), 1 << 12, |_, ($($x,)+ $($y,)+)| {
+                    $crate::dispatch!(_s => {
+                        let n = 0;
+                        $(let n = $x.len().max(n);)+
+                        $(let $x = &$x[..n];)+
+                        $(let $y = &mut $y[..n];)+
+                        for i in 0..n {
+                            $(let $x = $x[i];)+
+                            ($($y[i]),+) = $body;
+                        }
+                    })
+                })
+            })
+        })
+    };
+}
+
+/// The array that says which precision a kernel works in.
+pub fn first<'a, 'py>(arrays: &'a Arrays<'py>) -> PyResult<&'a Bound<'py, PyAny>> {
+    next(&mut arrays.iter())
+}
+
+pub fn next<'a, 'py>(
+    arrays: &mut impl Iterator<Item = &'a Bound<'py, PyAny>>,
+) -> PyResult<&'a Bound<'py, PyAny>>
+where
+    'py: 'a,
+{
+    arrays.next().ok_or_else(|| PyTypeError::new_err("expected more arrays"))
+}
+
+pub fn same_length(lengths: &[usize]) -> PyResult<()> {
+    let same = lengths.windows(2).all(|w| w[0] == w[1]);
+    if same { Ok(()) } else { Err(PyValueError::new_err("expected arrays of one length")) }
+}
+
 /// An input array, held readable for as long as this lives.
 pub struct In<'py, T: Element>(PyReadonlyArrayDyn<'py, T>);
 

@@ -2,8 +2,10 @@
 //! is fetched while the others work. Memory latency, not arithmetic, is what such rays wait for.
 
 use super::node::{Child, Stack, key};
-use super::ray::{Heading, Ready, ready};
-use super::{Bvh, Hit, Ray, single};
+use super::{Bvh, single};
+use crate::accel::block::leaf;
+use crate::accel::ray::{Heading, Ready, ready};
+use crate::accel::{Hit, Ray};
 use crate::real::Real;
 use crate::simd::Simd;
 
@@ -42,7 +44,7 @@ impl<T: Real> Row<T> {
     fn turn<const ANY: bool, S: Simd>(&mut self, s: S, tree: &Bvh<T>) -> bool {
         if self.child.is_leaf() {
             let run = tree.run(self.child);
-            if single::leaf::<ANY, T, S>(s, run, &self.ray, self.heading, self.ignore, &mut self.hit) {
+            if leaf::<ANY, T, S>(s, run, &self.ray, self.heading, self.ignore, &mut self.hit) {
                 return false;
             }
         } else {

@@ -1,7 +1,9 @@
 //! From the binary tree to nodes of eight children and blocks of four triangles, with exact boxes.
 
-use super::build::{Branch, Item};
-use super::node::{BLOCK, Block, Child, Node, WIDTH};
+use super::build::Branch;
+use super::node::{Child, Node, WIDTH};
+use crate::accel::block::{BLOCK, Block};
+use crate::accel::bounds::Item;
 use crate::real::Real;
 
 /// Nodes and blocks in the order of depth.

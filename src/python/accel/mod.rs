@@ -1,115 +1,18 @@
 //! Bindings of `accel`.
 
-use crate::accel::Bvh;
-use crate::accel::query::{Found, Rays};
-use crate::python::array::{In, Out};
-use crate::real::Real;
-use numpy::Element;
-use pyo3::exceptions::PyTypeError;
+mod rays;
+mod tree;
+
+pub use tree::Tree;
+
 use pyo3::prelude::*;
-use std::sync::Arc;
-
-/// A tree in the precision of its mesh, shared with the kernels that trace rays.
-#[pyclass(frozen)]
-pub struct Tree(Precision);
-
-enum Precision {
-    Single(Arc<Bvh<f32>>),
-    Double(Arc<Bvh<f64>>),
-}
-
-impl Tree {
-    /// The tree, if it is of this precision.
-    pub fn of<T: Held>(&self) -> PyResult<&Arc<Bvh<T>>> {
-        T::pick(self).ok_or_else(|| PyTypeError::new_err("the tree is of another precision"))
-    }
-}
-
-/// A precision that trees are held in.
-pub trait Held: Real {
-    fn wrap(tree: Bvh<Self>) -> Tree;
-    fn pick(tree: &Tree) -> Option<&Arc<Bvh<Self>>>;
-}
-
-impl Held for f32 {
-    fn wrap(tree: Bvh<f32>) -> Tree {
-        Tree(Precision::Single(Arc::new(tree)))
-    }
-    fn pick(tree: &Tree) -> Option<&Arc<Bvh<f32>>> {
-        if let Precision::Single(t) = &tree.0 { Some(t) } else { None }
-    }
-}
-
-impl Held for f64 {
-    fn wrap(tree: Bvh<f64>) -> Tree {
-        Tree(Precision::Double(Arc::new(tree)))
-    }
-    fn pick(tree: &Tree) -> Option<&Arc<Bvh<f64>>> {
-        if let Precision::Double(t) = &tree.0 { Some(t) } else { None }
-    }
-}
-
-#[pymethods]
-impl Tree {
-    /// Faces, nodes, blocks, bytes, children a node, triangles a block.
-    fn stats(&self) -> (usize, usize, usize, usize, f64, f64) {
-        let s = match &self.0 {
-            Precision::Single(t) => t.stats(),
-            Precision::Double(t) => t.stats(),
-        };
-        (s.faces, s.nodes, s.blocks, s.bytes, s.children_per_node, s.triangles_per_block)
-    }
-}
-
-/// The arrays of rays, held while a kernel reads them.
-struct RayArrays<'py, T: Element> {
-    origins: In<'py, T>,
-    directions: In<'py, T>,
-    t_min: In<'py, T>,
-    t_max: In<'py, T>,
-    ignore_face: In<'py, i32>,
-}
-
-impl<'py, T: Real + Element> RayArrays<'py, T> {
-    /// From origins, directions, t_min, t_max, ignore_face.
-    fn of([o, d, low, high, ignore]: &[Bound<'py, PyAny>; 5]) -> PyResult<Self> {
-        Ok(RayArrays {
-            origins: In::of("origins", o)?,
-            directions: In::of("directions", d)?,
-            t_min: In::of("t_min", low)?,
-            t_max: In::of("t_max", high)?,
-            ignore_face: In::of("ignore_face", ignore)?,
-        })
-    }
-    fn get(&self) -> PyResult<Rays<'_, T>> {
-        Ok(Rays {
-            origins: self.origins.items()?,
-            directions: self.directions.items()?,
-            t_min: self.t_min.slice()?,
-            t_max: self.t_max.slice()?,
-            ignore_face: self.ignore_face.slice()?,
-        })
-    }
-}
-
-/// The arrays of hits, held while a kernel writes them.
-struct HitArrays<'py, T: Element>(Out<'py, T>, Out<'py, i32>, Out<'py, T>, Out<'py, T>);
-
-impl<'py, T: Real + Element> HitArrays<'py, T> {
-    /// From t, face, u, v.
-    fn of([t, face, u, v]: &[Bound<'py, PyAny>; 4]) -> PyResult<Self> {
-        Ok(HitArrays(Out::of("t", t)?, Out::of("face", face)?, Out::of("u", u)?, Out::of("v", v)?))
-    }
-    fn get(&mut self) -> PyResult<Found<'_, T>> {
-        Ok(Found { t: self.0.slice()?, face: self.1.slice()?, u: self.2.slice()?, v: self.3.slice()? })
-    }
-}
 
 #[pymodule]
 pub mod accel {
     #[pymodule_export]
     use super::Tree;
-    use super::{Held, HitArrays, RayArrays};
+    use super::rays::{HitArrays, RayArrays};
+    use super::tree::Held;
     use crate::accel as kernels;
     use crate::accel::Bvh;
     use crate::python::array::{In, Out, run};

@@ -1,12 +1,10 @@
-//! The layout of the tree: nodes of eight boxes, leaves of blocks of four triangles, and the traversal stack.
+//! The layout of the tree: nodes of eight boxes, leaves that are runs of blocks, and the traversal stack.
 
 use crate::real::{Lanes, Real};
 use std::mem::MaybeUninit;
 
 /// The width of a node.
 pub const WIDTH: usize = 8;
-/// Triangles in a block.
-pub const BLOCK: usize = 4;
 /// Deepest level of a tree; the builder keeps to it.
 pub const MAX_DEPTH: usize = 72;
 /// At each level all children but one wait.
@@ -63,31 +61,6 @@ impl<T: Real> Node<T> {
             planes: [[[T::INFINITY; WIDTH]; 3], [[-T::INFINITY; WIDTH]; 3]],
             children: [Child::EMPTY; WIDTH],
         }
-    }
-}
-
-/// Four triangles. Empty lanes hold NaN, which no comparison accepts, and face -1.
-#[derive(Clone, Copy, Debug)]
-#[repr(C, align(32))]
-pub struct Block<T> {
-    /// `[vertex][axis][triangle]`.
-    pub vertices: [[[T; BLOCK]; 3]; 3],
-    pub faces: [i32; BLOCK],
-}
-
-impl<T: Real> Block<T> {
-    /// From at most four faces and their corners.
-    pub fn new(triangles: impl Iterator<Item = (i32, [[T; 3]; 3])>) -> Self {
-        let mut block = Block { vertices: [[[T::NAN; BLOCK]; 3]; 3], faces: [-1; BLOCK] };
-        for (lane, (face, corners)) in triangles.enumerate() {
-            block.faces[lane] = face;
-            for (vertex, p) in corners.iter().enumerate() {
-                for k in 0..3 {
-                    block.vertices[vertex][k][lane] = p[k];
-                }
-            }
-        }
-        block
     }
 }
 

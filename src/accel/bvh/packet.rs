@@ -1,16 +1,18 @@
 //! Sixteen rays that run alike, through the tree together: a node is tested once, by intervals that hold all rays, and a
 //! child once more, by the rays themselves; at leaves the lanes are rays, not triangles.
 //!
-//! Interval bounds follow from the monotone slab arithmetic as the boxes' do (see [`super::ray`]), so answers are
+//! Interval bounds follow from the monotone slab arithmetic as the boxes' do (see [`crate::accel::ray`]), so answers are
 //! those of single rays to the bit.
 //!
 //! I. Wald, P. Slusallek, C. Benthin, M. Wagner, *Interactive Rendering with Coherent Ray Tracing*, 2001; S. Boulos
 //! et al., *Packet-based Whitted and Distribution Ray Tracing*, 2007, for the intervals.
 
-use super::node::{BLOCK, Block, Child, Entry, Node, Stack, key};
-use super::ray::{Heading, Ready, prepare, proper, slabs};
-use super::single::{in_order, own_box, planes, splat8};
-use super::{Bvh, Hit, Ray};
+use super::Bvh;
+use super::node::{Child, Entry, Node, Stack, key};
+use super::single::{planes, splat8};
+use crate::accel::block::{BLOCK, Block, in_order, own_box};
+use crate::accel::ray::{Heading, Ready, prepare, proper, slabs};
+use crate::accel::{Hit, Ray};
 use crate::geometry::ray_triangle::{along, watertight};
 use crate::real::{Lanes, Real};
 use crate::simd::{Simd, SimdBase};

@@ -1,0 +1,109 @@
+"""Meshes, rays and hits as arrays: what every structure takes and gives."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from typing import Any, NamedTuple
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from .. import _arrays
+from .._arrays import Floats
+
+__all__ = ["Hit", "Progress", "flat", "hit_arrays", "mesh_arrays", "ray_arrays"]
+
+Progress = bool | Callable[[int, int], object] | None
+
+
+class Hit(NamedTuple):
+    """Where rays meet a mesh; every array has the rays' shape.
+
+    The point is `(1 - u - v) a + u b + v c` of the face's vertices, and `origin + t direction`. A miss has `t`
+    infinite, `face` -1, `u` and `v` zero. What is no ray (see `BVH.closest_hit`) has `t`, `u`, `v` NaN and `face` -1.
+    """
+
+    t: Floats
+    """Distance in units of the direction's length."""
+    face: NDArray[np.int32]
+    u: Floats
+    v: Floats
+    normal: Floats | None = None
+    """Unit normals of the faces by their winding, (..., 3), if asked for; NaN at misses and on faces without area."""
+
+
+def mesh_arrays(positions: ArrayLike, faces: ArrayLike) -> tuple[Floats, NDArray[np.int32]]:
+    p = _arrays.vectors("positions", positions)
+    if p.ndim != 2:
+        raise ValueError(f"positions: expected shape (V, 3), got {p.shape}")
+    array = np.asarray(faces)
+    f = _arrays.indices("faces", array.reshape(0, 3) if array.size == 0 else array, 3, p.shape[0])
+    if f.shape[0] > 2**27:
+        raise ValueError(f"faces: expected at most {2**27}, got {f.shape[0]}")
+    if not np.isfinite(p).all():
+        at = int(np.argwhere(~np.isfinite(p).all(-1))[0, 0])
+        raise ValueError(f"positions: vertex {at} is not finite: {p[at].tolist()}")
+    if len(p):
+        # Products of three edges must neither overflow nor vanish.
+        largest, smallest = (1e18, 1e-12) if p.dtype == np.float32 else (1e150, 1e-100)
+        far = np.abs(p).max(-1)
+        if far.max() > largest:
+            at = int(far.argmax())
+            raise ValueError(f"positions: vertex {at} lies beyond {largest:g}: {p[at].tolist()}; scale the mesh down")
+        extent = float(np.ptp(p, axis=0).max())
+        if 0.0 < extent < smallest:
+            raise ValueError(f"positions: extent {extent:g} is below {smallest:g}; scale the mesh up")
+    return p, f
+
+
+def ray_arrays(
+    dtype: np.dtype[Any],
+    faces: int,
+    origins: ArrayLike,
+    directions: ArrayLike,
+    t_min: ArrayLike,
+    t_max: ArrayLike,
+    ignore_face: ArrayLike | None,
+) -> tuple[tuple[int, ...], list[NDArray[Any]]]:
+    """The batch's shape; origins, directions, t_min, t_max, ignore_face of its length, or of length one."""
+    core: dict[str, tuple[NDArray[Any], int]] = {
+        "origins": (_arrays.vectors("origins", origins, 3, dtype), 1),
+        "directions": (_arrays.vectors("directions", directions, 3, dtype), 1),
+    }
+    for name, value in (("t_min", t_min), ("t_max", t_max)):
+        array = _arrays.floats(name, value, dtype)
+        if array.ndim == 0 and np.isnan(array):
+            raise ValueError(f"{name}: expected a number, got nan")
+        core[name] = (array, 0)
+    core["ignore_face"] = (_ignored_faces(ignore_face, faces), 0)
+    # What is one for all stays one.
+    many = {n: c for n, c in core.items() if c[1] or c[0].ndim}
+    shape, flat = _arrays.broadcast(many)
+    arrays = dict(zip(many, flat, strict=True))
+    return shape, [arrays.get(n, core[n][0].reshape(-1)) for n in core]
+
+
+def _ignored_faces(ignore_face: ArrayLike | None, faces: int) -> NDArray[np.int32]:
+    if ignore_face is None:
+        return np.array(-1, np.int32)
+    array = np.asarray(ignore_face)
+    if array.dtype.kind not in "iu":
+        raise TypeError(f"ignore_face: expected integers, got dtype {array.dtype}")
+    bad = (array < -1) | (array >= max(faces, 1))
+    if bad.any():
+        raise ValueError(f"ignore_face: expected -1 or a face below {faces}, got {array[bad].flat[0]}")
+    return np.require(array, np.int32, ["C", "A"])
+
+
+def hit_arrays(shape: tuple[int, ...], dtype: np.dtype[Any], normals: bool, out: Hit | None) -> Hit:
+    given: Any = out if out is not None else Hit(*[None] * 4)  # type: ignore[arg-type]
+    if not isinstance(given, Hit):
+        raise TypeError(f"out: expected a Hit, got {type(out).__name__}")
+    t, u, v = (_arrays.output(f"out.{n}", getattr(given, n), shape, dtype) for n in "tuv")
+    face = _arrays.output("out.face", given.face, shape, np.int32)
+    normal = _arrays.output("out.normal", given.normal, (*shape, 3), dtype) if normals else None
+    return Hit(t, face, u, v, normal)
+
+
+def flat(hit: Hit) -> list[NDArray[Any]]:
+    return [hit.t.reshape(-1), hit.face.reshape(-1), hit.u.reshape(-1), hit.v.reshape(-1)]

@@ -1,0 +1,126 @@
+//! Triangles four at a time, and one ray against a run of them: what every structure's leaves hold, and the test by which
+//! all of them decide (see [`super::ray`]).
+
+use super::Hit;
+use super::ray::{Heading, Ready, slabs};
+use crate::geometry::ray_triangle::watertight;
+use crate::real::{Lanes, Real};
+use crate::simd::{Simd, SimdBase};
+
+/// Triangles in a block.
+pub const BLOCK: usize = 4;
+
+/// Four triangles. Empty lanes hold NaN, which no comparison accepts, and face -1.
+#[derive(Clone, Copy, Debug)]
+#[repr(C, align(32))]
+pub struct Block<T> {
+    /// `[vertex][axis][triangle]`.
+    pub vertices: [[[T; BLOCK]; 3]; 3],
+    pub faces: [i32; BLOCK],
+}
+
+impl<T: Real> Block<T> {
+    /// From at most four faces and their corners.
+    pub fn new(triangles: impl Iterator<Item = (i32, [[T; 3]; 3])>) -> Self {
+        let mut block = Block { vertices: [[[T::NAN; BLOCK]; 3]; 3], faces: [-1; BLOCK] };
+        for (lane, (face, corners)) in triangles.enumerate() {
+            block.faces[lane] = face;
+            for (vertex, p) in corners.iter().enumerate() {
+                for k in 0..3 {
+                    block.vertices[vertex][k][lane] = p[k];
+                }
+            }
+        }
+        block
+    }
+}
+
+/// Tests the triangles of a leaf, and keeps the nearest hit. With `ANY`, returns true at the first.
+#[inline(always)]
+pub fn leaf<const ANY: bool, T: Real, S: Simd>(
+    s: S,
+    blocks: &[Block<T>],
+    ray: &Ready<T>,
+    heading: Heading,
+    ignore: i32,
+    hit: &mut Hit<T>,
+) -> bool {
+    let order = heading.order;
+    let origin = splat4x3::<T, S>(s, ray.origin.to_array());
+    let shear = splat4x3::<T, S>(s, ray.shear.to_array());
+    for block in blocks {
+        let (a, b, c) = (corner(s, block, 0, order), corner(s, block, 1, order), corner(s, block, 2, order));
+        let Some((mask, x)) = watertight(origin.into(), shear.into(), a.into(), b.into(), c.into()) else {
+            continue;
+        };
+        let end = splat4::<T, S>(s, hit.t);
+        let mask = mask & Lanes::less(splat4::<T, S>(s, ray.t_min), x.t) & Lanes::less_eq(x.t, end);
+        if T::V4::<S>::bits(mask) == 0 {
+            continue;
+        }
+        // The hit must pass its triangle's own box, by the arithmetic of the nodes.
+        let (near, far) = own_box(heading, a, b, c);
+        let (entry, exit) = slabs(
+            near,
+            far,
+            splat4x3::<T, S>(s, in_order(order, ray.near)),
+            splat4x3::<T, S>(s, in_order(order, ray.far)),
+            splat4x3::<T, S>(s, in_order(order, ray.inverse)),
+        );
+        let passed = Lanes::less_eq(entry, exit) & Lanes::less_eq(splat4::<T, S>(s, ray.t_min), exit);
+        let t = Lanes::max(x.t, entry);
+        let mut bits = T::V4::<S>::bits(mask & passed & Lanes::less_eq(t, end));
+        let (t, u, v) = (t.to_array(), x.u.to_array(), x.v.to_array());
+        while bits != 0 {
+            let l = bits.trailing_zeros() as usize;
+            bits &= bits - 1;
+            let face = block.faces[l];
+            if face != ignore && (t[l] < hit.t || (t[l] == hit.t && face < hit.face)) {
+                *hit = Hit { t: t[l], u: u[l], v: v[l], face };
+                if ANY {
+                    return true;
+                }
+            }
+        }
+    }
+    false
+}
+
+#[inline(always)]
+fn splat4<T: Real, S: Simd>(s: S, x: T) -> T::V4<S> {
+    SimdBase::splat(s, x)
+}
+
+#[inline(always)]
+pub fn in_order<X: Copy>(order: [usize; 3], v: [X; 3]) -> [X; 3] {
+    [v[order[0]], v[order[1]], v[order[2]]]
+}
+
+#[inline(always)]
+fn splat4x3<T: Real, S: Simd>(s: S, v: [T; 3]) -> [T::V4<S>; 3] {
+    [splat4::<T, S>(s, v[0]), splat4::<T, S>(s, v[1]), splat4::<T, S>(s, v[2])]
+}
+
+/// One vertex of each of four triangles.
+#[inline(always)]
+fn corner<T: Real, S: Simd>(s: S, block: &Block<T>, vertex: usize, order: [usize; 3]) -> [T::V4<S>; 3] {
+    let [x, y, z] = in_order(order, [0, 1, 2]);
+    let v = &block.vertices[vertex];
+    [
+        SimdBase::load_array_ref(s, &v[x]),
+        SimdBase::load_array_ref(s, &v[y]),
+        SimdBase::load_array_ref(s, &v[z]),
+    ]
+}
+
+/// The planes of triangles' own boxes that rays of a heading enter and leave through, like the corners in its order.
+#[inline(always)]
+pub fn own_box<V: Lanes>(heading: Heading, a: [V; 3], b: [V; 3], c: [V; 3]) -> ([V; 3], [V; 3]) {
+    let (mut near, mut far) = (a, a);
+    for i in 0..3 {
+        let (low, high) = (a[i].min(b[i]).min(c[i]), a[i].max(b[i]).max(c[i]));
+        let ahead = heading.negative[heading.order[i]] == 0;
+        (near[i], far[i]) = if ahead { (low, high) } else { (high, low) };
+    }
+    (near, far)
+}

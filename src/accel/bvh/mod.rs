@@ -1,0 +1,197 @@
+//! A bounding volume hierarchy: nodes of eight boxes over blocks of four triangles.
+
+mod build;
+mod collapse;
+mod cut;
+mod node;
+mod packet;
+mod single;
+mod stream;
+
+use super::block::Block;
+use super::{Hit, Ray, bounds, ray};
+use crate::parallel::{self, Interrupted, Watch};
+use crate::real::Real;
+use crate::simd::Simd;
+use node::{Child, Node};
+
+/// A tree of boxes, eight children a node, over triangles in blocks of four.
+pub struct Bvh<T> {
+    nodes: Vec<Node<T>>,
+    blocks: Vec<Block<T>>,
+    bounds: [[T; 3]; 2],
+    faces: usize,
+}
+
+/// The size of a tree.
+#[derive(Clone, Copy, Debug)]
+pub struct Stats {
+    pub faces: usize,
+    pub nodes: usize,
+    pub blocks: usize,
+    pub bytes: usize,
+    /// Filled child slots a node, and triangles a block, on average.
+    pub children_per_node: f64,
+    pub triangles_per_block: f64,
+}
+
+impl<T: Real> Bvh<T> {
+    /// More faces than this are not held.
+    pub const MAX_FACES: usize = Child::MAX_BLOCKS;
+
+    /// Indices must be in range, coordinates finite, and faces at most [`Self::MAX_FACES`].
+    pub fn build(
+        watch: &mut dyn Watch,
+        positions: &[[T; 3]],
+        faces: &[[i32; 3]],
+    ) -> Result<Self, Interrupted> {
+        assert!(faces.len() <= Self::MAX_FACES);
+        parallel::run_forking(watch, |stop| {
+            let scene = bounds::scene_bounds(positions, faces);
+            let mut items = bounds::items(positions, faces, &scene);
+            let branches = build::binary_tree(&mut items, stop);
+            let source = collapse::Source { positions, faces, items: &items, branches: &branches };
+            let wide = collapse::collapse(&source);
+            Bvh { nodes: wide.nodes, blocks: wide.blocks, bounds: scene, faces: faces.len() }
+        })
+    }
+
+    // The four queries below serve other kernels from inside their dispatch. Each enters the level anew rather than
+    // being inlined there, so that traversal is compiled once a level and precision, not once a caller.
+
+    /// The nearest hit of one ray, inside a dispatch.
+    #[inline(never)]
+    pub fn closest_hit<S: Simd>(&self, s: S, ray: &Ray<T>) -> Hit<T> {
+        s.vectorize(
+            #[inline(always)]
+            || match ray::ready(&self.bounds, ray) {
+                None => Hit::no_ray(),
+                Some((ready, heading)) => {
+                    ready.finish(single::trace::<false, T, S>(s, self, &ready, heading, ray.ignore_face))
+                }
+            },
+        )
+    }
+
+    /// Whether anything is hit.
+    #[inline(never)]
+    pub fn any_hit<S: Simd>(&self, s: S, ray: &Ray<T>) -> bool {
+        s.vectorize(
+            #[inline(always)]
+            || match ray::ready(&self.bounds, ray) {
+                None => false,
+                Some((ready, heading)) => {
+                    single::trace::<true, T, S>(s, self, &ready, heading, ray.ignore_face).is_hit()
+                }
+            },
+        )
+    }
+
+    /// The nearest hits of a batch, which should hold at least some hundred rays.
+    #[inline(never)]
+    pub fn closest_hits<S: Simd>(&self, s: S, rays: &[Ray<T>], hits: &mut [Hit<T>]) {
+        s.vectorize(
+            #[inline(always)]
+            || self.trace_batch::<false, S>(s, rays.len(), |i| rays[i], |i, hit| hits[i] = hit),
+        )
+    }
+
+    /// Whether each ray of a batch hits anything.
+    #[inline(never)]
+    pub fn any_hits<S: Simd>(&self, s: S, rays: &[Ray<T>], hits: &mut [bool]) {
+        s.vectorize(
+            #[inline(always)]
+            || self.trace_batch::<true, S>(s, rays.len(), |i| rays[i], |i, hit| hits[i] = hit.is_hit()),
+        )
+    }
+
+    /// Hands every ray's hit to `answer`, in whatever order: runs of rays that go alike are traced as packets, the
+    /// others in turns.
+    #[inline(always)]
+    pub(in crate::accel) fn trace_batch<const ANY: bool, S: Simd>(
+        &self,
+        s: S,
+        count: usize,
+        rays: impl Fn(usize) -> Ray<T>,
+        mut answer: impl FnMut(usize, Hit<T>),
+    ) {
+        let mut apart: Vec<u32> = Vec::new();
+        let whole = count - count % packet::SIZE;
+        for first in (0..whole).step_by(packet::SIZE) {
+            let mut run = [Ray::new([T::zero(); 3], [T::zero(); 3]); packet::SIZE];
+            for (l, ray) in run.iter_mut().enumerate() {
+                *ray = rays(first + l);
+            }
+            match packet::gather(s, self, &run) {
+                Some(mut packet) => {
+                    packet.trace::<ANY>(s, self);
+                    for l in 0..packet::SIZE {
+                        answer(first + l, packet.hit(l));
+                    }
+                }
+                None => apart.extend((first..first + packet::SIZE).map(|i| i as u32)),
+            }
+        }
+        apart.extend((whole..count).map(|i| i as u32));
+        stream::trace::<ANY, T, S, _, _>(s, self, rays, &apart, answer);
+    }
+
+    /// The exact bounds of all triangles: zeros if there are none.
+    pub fn bounds(&self) -> [[T; 3]; 2] {
+        self.bounds
+    }
+
+    /// The number of triangles.
+    pub fn faces(&self) -> usize {
+        self.faces
+    }
+
+    pub fn stats(&self) -> Stats {
+        let (nodes, blocks) = (self.nodes.len(), self.blocks.len());
+        let filled = self.nodes.iter().flat_map(|n| n.children).filter(|&c| c != Child::EMPTY).count();
+        Stats {
+            faces: self.faces,
+            nodes,
+            blocks,
+            bytes: nodes * size_of::<Node<T>>() + blocks * size_of::<Block<T>>(),
+            children_per_node: filled as f64 / nodes as f64,
+            triangles_per_block: self.faces as f64 / (blocks as f64).max(1.0),
+        }
+    }
+
+    #[inline(always)]
+    fn node(&self, child: Child) -> &Node<T> {
+        // Sound: inner children of a built tree are indices of its nodes, and it has a root.
+        unsafe { self.nodes.get_unchecked(child.index()) }
+    }
+
+    #[inline(always)]
+    fn run(&self, child: Child) -> &[Block<T>] {
+        let (first, count) = child.run();
+        // Sound: leaves of a built tree are runs of its blocks.
+        unsafe { self.blocks.get_unchecked(first..first + count) }
+    }
+
+    /// Asks for what a child refers to before it is needed.
+    #[inline(always)]
+    fn prefetch(&self, child: Child) {
+        if child.is_leaf() {
+            fetch(&self.run(child)[0]);
+        } else {
+            fetch(self.node(child));
+        }
+    }
+}
+
+/// Asks for the cache lines of `x`; a hint without other effect.
+#[inline(always)]
+fn fetch<X>(x: &X) {
+    #[cfg(target_arch = "x86_64")]
+    for line in 0..size_of::<X>().div_ceil(64) {
+        use std::arch::x86_64::{_MM_HINT_T0, _mm_prefetch};
+        // Sound: SSE is part of x86-64, and a prefetch touches no memory as far as the program can tell.
+        unsafe { _mm_prefetch::<_MM_HINT_T0>((x as *const X).cast::<i8>().add(64 * line)) };
+    }
+    #[cfg(not(target_arch = "x86_64"))]
+    let _ = x;
+}
