@@ -1,4 +1,4 @@
-//! Bindings of `accel`.
+//! Bindings of `accel`: bvh, brute_force, offset_ray.
 
 mod rays;
 mod tree;
