@@ -176,6 +176,12 @@ impl<V: Lanes> Mat3<V> {
     pub fn from_rows(r: [[V; 3]; 3]) -> Self {
         Self(std::array::from_fn(|c| Vec3 { x: r[0][c], y: r[1][c], z: r[2][c] }))
     }
+    /// Its rows.
+    #[inline(always)]
+    pub fn rows(self) -> [[V; 3]; 3] {
+        let [a, b, c] = self.0;
+        [[a.x, b.x, c.x], [a.y, b.y, c.y], [a.z, b.z, c.z]]
+    }
     #[inline(always)]
     pub fn mul_vec(self, v: Vec3<V>) -> Vec3<V> {
         self.0[0] * v.x + self.0[1] * v.y + self.0[2] * v.z

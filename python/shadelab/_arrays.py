@@ -9,7 +9,7 @@ from __future__ import annotations
 import math
 import operator
 import warnings
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from typing import Any, TypeAlias
 
 import numpy as np
@@ -141,27 +141,35 @@ def broadcast(
     return shape, flat
 
 
+Core: TypeAlias = int | tuple[int, int]
+"""The trailing axes of one element: 0 for a number, 3 for a vector of three, (4, 4) for a matrix."""
+
+
 def elementwise(
     kernel: Callable[..., None],
-    given: dict[str, tuple[ArrayLike, int]],
-    outputs: Sequence[int | tuple[int, DTypeLike]],
+    given: Mapping[str, tuple[ArrayLike, Core]],
+    outputs: Sequence[Core | tuple[Core, DTypeLike]],
     *options: Any,
 ) -> tuple[NDArray[Any], ...]:
     """Calls `kernel(*options, given, out)` on arguments of equal standing, broadcast, and gives new arrays.
 
-    `given` maps a name to (value, components), with 0 for numbers; `outputs` gives each result's components, with its
-    dtype where that is not the arguments' precision.
+    `given` maps a name to (value, core); `outputs` gives each result's core, with its dtype where that is not the
+    arguments' precision.
     """
     dtype = result_dtype(**{name: value for name, (value, _) in given.items()})
-    core = {
-        name: (vectors(name, value, n, dtype), 1) if n else (floats(name, value, dtype), 0)
-        for name, (value, n) in given.items()
-    }
+    core: dict[str, tuple[Floats, int]] = {}
+    for name, (value, n) in given.items():
+        if isinstance(n, tuple):
+            core[name] = matrices(name, value, n[0], dtype), 2
+        else:
+            core[name] = (vectors(name, value, n, dtype), 1) if n else (floats(name, value, dtype), 0)
     shape, flat = broadcast(core)
-    kinds = [(o, dtype) if isinstance(o, int) else o for o in outputs]
-    out = tuple(np.empty((*shape, n) if n else shape, kind) for n, kind in kinds)
-    kernel(*options, flat, list(out))
-    return out
+    out = []
+    for o in outputs:
+        n, kind = (o, dtype) if isinstance(o, int) or isinstance(o[1], int) else o
+        out.append(np.empty(shape + (n if isinstance(n, tuple) else (n,) if n else ()), kind))
+    kernel(*options, flat, out)
+    return tuple(out)
 
 
 def output(name: str, out: NDArray[Any] | None, shape: Sequence[int], dtype: DTypeLike) -> NDArray[Any]:

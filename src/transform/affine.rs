@@ -2,9 +2,8 @@
 //!
 //! O. Rodrigues, *Des lois géométriques qui régissent les déplacements d'un système solide*, 1840.
 
-use super::{Rows4, fill};
+use super::Rows4;
 use crate::math::sin_cos;
-use crate::parallel::{Interrupted, Watch};
 use crate::real::Real;
 use crate::vec::Vec3;
 
@@ -25,38 +24,16 @@ pub fn rotate_axis<T: Real>(axis: Vec3<T>, angle: T) -> Rows4<T> {
     ]
 }
 
-/// [`rotate_axis`] over arrays of equal length.
-pub fn rotate_axis_many<T: Real>(
-    watch: &mut dyn Watch,
-    axes: &[[T; 3]],
-    angles: &[T],
-    out: &mut [Rows4<T>],
-) -> Result<(), Interrupted> {
-    fill(watch, out, |i| rotate_axis(axes[i].into(), angles[i]))
+/// The translation by an offset.
+#[inline(always)]
+pub fn translate<T: Real>([x, y, z]: [T; 3]) -> Rows4<T> {
+    let (one, zero) = (T::one(), T::zero());
+    [[one, zero, zero, x], [zero, one, zero, y], [zero, zero, one, z], [zero, zero, zero, one]]
 }
 
-/// Translations by `offsets`.
-pub fn translate_many<T: Real>(
-    watch: &mut dyn Watch,
-    offsets: &[[T; 3]],
-    out: &mut [Rows4<T>],
-) -> Result<(), Interrupted> {
+/// The scaling along the axes.
+#[inline(always)]
+pub fn scale<T: Real>([x, y, z]: [T; 3]) -> Rows4<T> {
     let (one, zero) = (T::one(), T::zero());
-    fill(watch, out, |i| {
-        let [x, y, z] = offsets[i];
-        [[one, zero, zero, x], [zero, one, zero, y], [zero, zero, one, z], [zero, zero, zero, one]]
-    })
-}
-
-/// Scalings by `factors` along the axes.
-pub fn scale_many<T: Real>(
-    watch: &mut dyn Watch,
-    factors: &[[T; 3]],
-    out: &mut [Rows4<T>],
-) -> Result<(), Interrupted> {
-    let (one, zero) = (T::one(), T::zero());
-    fill(watch, out, |i| {
-        let [x, y, z] = factors[i];
-        [[x, zero, zero, zero], [zero, y, zero, zero], [zero, zero, z, zero], [zero, zero, zero, one]]
-    })
+    [[x, zero, zero, zero], [zero, y, zero, zero], [zero, zero, z, zero], [zero, zero, zero, one]]
 }

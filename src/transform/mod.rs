@@ -15,23 +15,10 @@ pub mod points;
 pub mod projection;
 pub mod view;
 
-use crate::parallel::{self, Interrupted, Watch};
-
+/// A matrix by rows.
+pub type Rows3<T> = [[T; 3]; 3];
 /// A matrix by rows.
 pub type Rows4<T> = [[T; 4]; 4];
-
-/// `out[i] = f(i)` in parallel; for matrices, where one element is tens of operations.
-fn fill<T: Send>(
-    watch: &mut dyn Watch,
-    out: &mut [T],
-    f: impl Fn(usize) -> T + Sync,
-) -> Result<(), Interrupted> {
-    parallel::for_each(watch, out, 1 << 12, |first, out: &mut [T]| {
-        for (i, out) in out.iter_mut().enumerate() {
-            *out = f(first + i);
-        }
-    })
-}
 
 #[cfg(test)]
 mod tests {

@@ -3,10 +3,8 @@
 //!
 //! The determinant's sign is taken out, so that a mirrored normal still points to the side that was outside.
 
-use super::{Rows4, fill};
-use crate::parallel::{Interrupted, Watch};
 use crate::real::Real;
-use crate::vec::{Mat3, Mat4, Vec3};
+use crate::vec::Mat3;
 
 /// The normal matrix of `m`, up to a positive factor.
 #[inline(always)]
@@ -16,17 +14,4 @@ pub fn normal_matrix<T: Real>(m: Mat3<T>) -> Mat3<T> {
     let m = Mat3(m.0.map(|c| c.map(|x| x / largest)));
     let cofactors = m.cofactor();
     if m.determinant() < T::zero() { Mat3(cofactors.0.map(|c| -c)) } else { cofactors }
-}
-
-/// [`normal_matrix`] of each matrix.
-pub fn normal_matrix_many<T: Real>(
-    watch: &mut dyn Watch,
-    matrices: &[Rows4<T>],
-    out: &mut [[[T; 3]; 3]],
-) -> Result<(), Interrupted> {
-    fill(watch, out, |i| {
-        let Mat3([a, b, c]) = normal_matrix(Mat4::from_rows(matrices[i]).mat3());
-        let row = |get: fn(Vec3<T>) -> T| [get(a), get(b), get(c)];
-        [row(|v| v.x), row(|v| v.y), row(|v| v.z)]
-    })
 }

@@ -5,9 +5,8 @@
 //!
 //! N. Reed, *Depth precision visualized*, 2015 (reversed depth); E. Lengyel, *Projection matrix tricks*, 2007.
 
-use super::{Rows4, fill};
+use super::Rows4;
 use crate::math::tan;
-use crate::parallel::{Interrupted, Watch};
 use crate::real::Real;
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -23,9 +22,11 @@ pub enum Depth {
 pub struct Frustum<T>(pub [T; 6]);
 
 impl<T: Real> Frustum<T> {
-    /// Symmetric, from a vertical field of view in radians and the ratio of width to height.
+    /// Symmetric, from a vertical field of view in radians within (0, π) and the ratio of width to height, else NaN.
     #[inline(always)]
     pub fn from_fov(fov_y: T, aspect: T, near: T, far: T) -> Self {
+        let proper = fov_y > T::zero() && fov_y < T::PI && aspect > T::zero();
+        let near = if proper { near } else { T::NAN };
         let top = near * tan(fov_y * T::of(0.5));
         let right = top * aspect;
         Frustum([-right, right, -top, top, near, far])
@@ -76,42 +77,6 @@ pub fn orthographic<T: Real>(frustum: Frustum<T>, depth: Depth) -> Rows4<T> {
     ]
 }
 
-/// [`perspective`] over an array.
-pub fn perspective_many<T: Real>(
-    watch: &mut dyn Watch,
-    frusta: &[[T; 6]],
-    depth: Depth,
-    out: &mut [Rows4<T>],
-) -> Result<(), Interrupted> {
-    fill(watch, out, |i| perspective(Frustum(frusta[i]), depth))
-}
-
-/// [`perspective`] over an array of vertical field of view, aspect, near, far.
-pub fn perspective_fov_many<T: Real>(
-    watch: &mut dyn Watch,
-    fields: &[[T; 4]],
-    depth: Depth,
-    out: &mut [Rows4<T>],
-) -> Result<(), Interrupted> {
-    fill(watch, out, |i| {
-        let [fov_y, aspect, near, far] = fields[i];
-        if !(fov_y > T::zero() && fov_y < T::PI && aspect > T::zero()) {
-            return [[T::NAN; 4]; 4];
-        }
-        perspective(Frustum::from_fov(fov_y, aspect, near, far), depth)
-    })
-}
-
-/// [`orthographic`] over an array.
-pub fn orthographic_many<T: Real>(
-    watch: &mut dyn Watch,
-    frusta: &[[T; 6]],
-    depth: Depth,
-    out: &mut [Rows4<T>],
-) -> Result<(), Interrupted> {
-    fill(watch, out, |i| orthographic(Frustum(frusta[i]), depth))
-}
-
 /// Normalised device coordinates to pixels: x to the right, y down, the picture's corner at `origin`; z stays.
 pub fn viewport<T: Real>(size: [T; 2], origin: [T; 2]) -> Rows4<T> {
     let (zero, one, half) = (T::zero(), T::one(), T::of(0.5));
@@ -124,33 +89,9 @@ pub fn viewport<T: Real>(size: [T; 2], origin: [T; 2]) -> Rows4<T> {
     ]
 }
 
-/// The distance along the line of sight (-z in eye space) that `projection` maps to the depth z/w. The projection's
-/// four entries that concern depth say which convention it is of.
+/// The distance along the line of sight (-z in eye space) that a projection maps to the depth z/w. Its four entries
+/// that concern depth, `[[a, b], [c, d]]`, say which convention it is of.
 #[inline(always)]
-pub fn linear_depth<T: Real>(depth: T, projection: &Rows4<T>) -> T {
-    let (a, b) = (projection[2][2], projection[2][3]);
-    let (c, d) = (projection[3][2], projection[3][3]);
+pub fn linear_depth<T: Real>(depth: T, [[a, b], [c, d]]: [[T; 2]; 2]) -> T {
     (depth * d - b) / (depth * c - a)
-}
-
-/// [`linear_depth`] of an array under one projection.
-pub fn linear_depth_many<T: Real>(
-    watch: &mut dyn Watch,
-    depth: &[T],
-    projection: &Rows4<T>,
-    out: &mut [T],
-) -> Result<(), Interrupted> {
-    crate::parallel::for_each(
-        watch,
-        (depth, out),
-        1 << 16,
-        |_, (depth, out): (&[T], &mut [T])| crate::dispatch!(_s => linear_depth_body(depth, projection, out)),
-    )
-}
-
-#[inline(always)]
-fn linear_depth_body<T: Real>(depth: &[T], projection: &Rows4<T>, out: &mut [T]) {
-    for (out, &depth) in out.iter_mut().zip(depth) {
-        *out = linear_depth(depth, projection);
-    }
 }

@@ -3,8 +3,7 @@
 //! `up` may slant; only its part across the line of sight counts. Where it is parallel to the line of sight, or eye
 //! and target coincide, there is no view: NaN.
 
-use super::{Rows4, fill};
-use crate::parallel::{Interrupted, Watch};
+use super::Rows4;
 use crate::real::Real;
 use crate::vec::Vec3;
 
@@ -26,15 +25,4 @@ pub fn look_at<T: Real>(eye: Vec3<T>, target: Vec3<T>, up: Vec3<T>) -> Rows4<T> 
         row(back),
         [T::zero(), T::zero(), T::zero(), if clear { T::one() } else { T::NAN }],
     ]
-}
-
-/// [`look_at`] over arrays of equal length.
-pub fn look_at_many<T: Real>(
-    watch: &mut dyn Watch,
-    eye: &[[T; 3]],
-    target: &[[T; 3]],
-    up: &[[T; 3]],
-    out: &mut [Rows4<T>],
-) -> Result<(), Interrupted> {
-    fill(watch, out, |i| look_at(eye[i].into(), target[i].into(), up[i].into()))
 }
