@@ -150,11 +150,13 @@ def elementwise(
     given: Mapping[str, tuple[ArrayLike, Core]],
     outputs: Sequence[Core | tuple[Core, DTypeLike]],
     *options: Any,
+    knobs: dict[str, ArrayLike] | None = None,
 ) -> tuple[NDArray[Any], ...]:
     """Calls `kernel(*options, given, out)` on arguments of equal standing, broadcast, and gives new arrays.
 
     `given` maps a name to (value, core); `outputs` gives each result's core, with its dtype where that is not the
-    arguments' precision.
+    arguments' precision. `knobs` are numbers that follow `given` and broadcast with them, but have no say in the
+    precision; a single one must not be NaN.
     """
     dtype = result_dtype(**{name: value for name, (value, _) in given.items()})
     core: dict[str, tuple[Floats, int]] = {}
@@ -163,6 +165,11 @@ def elementwise(
             core[name] = matrices(name, value, n[0], dtype), 2
         else:
             core[name] = (vectors(name, value, n, dtype), 1) if n else (floats(name, value, dtype), 0)
+    for name, knob in (knobs or {}).items():
+        array = floats(name, knob, dtype)
+        if array.ndim == 0 and np.isnan(array):
+            raise ValueError(f"{name}: expected a number, got nan")
+        core[name] = (array, 0)
     shape, flat = broadcast(core)
     out = []
     for o in outputs:

@@ -13,8 +13,7 @@
 //! Triangles without area are missed, unless a ray passes within round-off of them. Nothing is fused: a fused edge
 //! function would break the antisymmetry.
 
-use crate::dispatch;
-use crate::parallel::{self, Interrupted, Watch};
+use super::exact::product_error;
 use crate::real::{Lanes, Real};
 use crate::vec::Vec3;
 
@@ -137,24 +136,6 @@ fn one_side<V: Lanes>(zero: V, ea: V, eb: V, ec: V) -> V::Mask {
     !(negative & positive)
 }
 
-/// `a b - fl(a b)`, exact unless parts of it underflow.
-/// T. J. Dekker, *A Floating-Point Technique for Extending the Available Precision*, 1971.
-#[inline(always)]
-fn product_error<V: Lanes>(a: V, b: V) -> V {
-    let ((ah, al), (bh, bl)) = (halves(a), halves(b));
-    ((ah * bh - a * b) + ah * bl + al * bh) + al * bl
-}
-
-/// The upper and the lower half of a significand: products of such halves are exact.
-#[inline(always)]
-fn halves<V: Lanes>(x: V) -> (V, V) {
-    // 2^ceil(digits / 2) + 1.
-    let cutter = if <V::Elem as Real>::EPSILON.to_f64() > 1e-10 { 4097.0 } else { 134217729.0 };
-    let c = x * x.num(cutter);
-    let high = c - (c - x);
-    (high, x - high)
-}
-
 #[inline(always)]
 fn moller_trumbore<T: Real>(
     o: Vec3<T>,
@@ -224,35 +205,5 @@ pub fn ray_triangle<T: Real>(
             Crossing { t: x.t * scale, ..x }
         }
         _ => Crossing { t: T::INFINITY, u: T::zero(), v: T::zero() },
-    }
-}
-
-/// [`ray_triangle`] over arrays of equal length.
-pub fn ray_triangle_many<T: Real>(
-    watch: &mut dyn Watch,
-    method: Method,
-    rays: [&[[T; 3]]; 2],
-    triangles: [&[[T; 3]]; 3],
-    interval: [&[T]; 2],
-    out: [&mut [T]; 3],
-) -> Result<(), Interrupted> {
-    let ([o, d], [a, b, c], [low, high], [t, u, v]) = (rays, triangles, interval, out);
-    parallel::for_each(watch, ((o, d, a), (b, c), (low, high), (t, u, v)), 1 << 14, |_, piece| {
-        let ((o, d, a), (b, c), (low, high), (t, u, v)) = piece;
-        dispatch!(_s => body(method, [o, d, a, b, c], [low, high], [t, u, v]))
-    })
-}
-
-#[inline(always)]
-fn body<T: Real>(
-    method: Method,
-    [o, d, a, b, c]: [&[[T; 3]]; 5],
-    [low, high]: [&[T]; 2],
-    [t, u, v]: [&mut [T]; 3],
-) {
-    for i in 0..t.len() {
-        let triangle = [a[i].into(), b[i].into(), c[i].into()];
-        let hit = ray_triangle(method, o[i].into(), d[i].into(), triangle, low[i], high[i]);
-        (t[i], u[i], v[i]) = (hit.t, hit.u, hit.v);
     }
 }

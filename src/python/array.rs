@@ -108,6 +108,11 @@ where
     arrays.next().ok_or_else(|| PyTypeError::new_err("expected more arrays"))
 }
 
+/// An option that the face should have refused.
+pub fn unknown(name: &str, got: &str) -> PyErr {
+    PyValueError::new_err(format!("{name}: unknown, got {got:?}"))
+}
+
 pub fn same_length(lengths: &[usize]) -> PyResult<()> {
     let same = lengths.windows(2).all(|w| w[0] == w[1]);
     if same { Ok(()) } else { Err(PyValueError::new_err("expected arrays of one length")) }

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import Literal, NamedTuple
+from typing import Literal, NamedTuple, overload
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -11,7 +11,7 @@ from .. import _arrays
 from .._arrays import Floats
 from .._kernels import geometry as _kernels
 
-__all__ = ["RayHit", "ray_triangle"]
+__all__ = ["RayHit", "SphereDetails", "SphereHit", "ray_sphere", "ray_triangle"]
 
 
 class RayHit(NamedTuple):
@@ -87,16 +87,135 @@ def ray_triangle(
     (2.0, 0.25, 0.5)
     """
     _arrays.choice("method", method, ("watertight", "moller_trumbore", "plane"))
-    named = {"origins": origins, "directions": directions, "a": a, "b": b, "c": c}
-    dtype = _arrays.result_dtype(**named)
-    core = {n: (_arrays.vectors(n, v, 3, dtype), 1) for n, v in named.items()}
-    for name, value in (("t_min", t_min), ("t_max", t_max)):
-        array = _arrays.floats(name, value, dtype)
-        if array.ndim == 0 and np.isnan(array):
-            raise ValueError(f"{name}: expected a number, got nan")
-        core[name] = (array, 0)
-    shape, flat = _arrays.broadcast(core)
-    t, u, v = (np.empty(shape, dtype) for _ in range(3))
-    out = [x.reshape(-1) for x in (t, u, v)]
-    _kernels.ray_triangle(method, flat[:2], flat[2:5], flat[5:], out)
-    return RayHit(t, u, v)
+    given = {"origins": (origins, 3), "directions": (directions, 3), "a": (a, 3), "b": (b, 3), "c": (c, 3)}
+    knobs = {"t_min": t_min, "t_max": t_max}
+    return RayHit(*_arrays.elementwise(_kernels.ray_triangle, given, [0, 0, 0], method, knobs=knobs))
+
+
+class SphereHit(NamedTuple):
+    """Where rays meet spheres, in units of the direction's length."""
+
+    t: Floats
+    """The first crossing of the surface within the interval; infinite if there is none."""
+    t_near: Floats
+    """Where the whole line enters; +inf if it misses."""
+    t_far: Floats
+    """Where the whole line leaves; -inf if it misses."""
+
+
+class SphereDetails(NamedTuple):
+    """`SphereHit` with what the method computed on its way."""
+
+    t: Floats
+    """The first crossing of the surface within the interval; infinite if there is none."""
+    t_near: Floats
+    """Where the whole line enters; +inf if it misses."""
+    t_far: Floats
+    """Where the whole line leaves; -inf if it misses."""
+    t_closest: Floats
+    """Where the line is nearest to the centre."""
+    distance: Floats
+    """The line's distance from the centre."""
+    discriminant: Floats
+    """The square of half the chord, `radius**2 - distance**2`; negative where the line misses."""
+
+
+SphereMethod = Literal["robust", "quadratic", "geometric"]
+
+
+@overload
+def ray_sphere(
+    origins: ArrayLike,
+    directions: ArrayLike,
+    centers: ArrayLike,
+    radii: ArrayLike,
+    method: SphereMethod = ...,
+    *,
+    t_min: ArrayLike = ...,
+    t_max: ArrayLike = ...,
+    full_output: Literal[False] = ...,
+) -> SphereHit: ...
+@overload
+def ray_sphere(
+    origins: ArrayLike,
+    directions: ArrayLike,
+    centers: ArrayLike,
+    radii: ArrayLike,
+    method: SphereMethod = ...,
+    *,
+    t_min: ArrayLike = ...,
+    t_max: ArrayLike = ...,
+    full_output: Literal[True],
+) -> SphereDetails: ...
+def ray_sphere(
+    origins: ArrayLike,
+    directions: ArrayLike,
+    centers: ArrayLike,
+    radii: ArrayLike,
+    method: SphereMethod = "robust",
+    *,
+    t_min: ArrayLike = 0.0,
+    t_max: ArrayLike = np.inf,
+    full_output: bool = False,
+) -> SphereHit | SphereDetails:
+    """Intersect rays with spheres.
+
+    Parameters
+    ----------
+    origins, directions : array_like, shape (..., 3)
+        Rays. Directions need not be of unit length.
+    centers : array_like, shape (..., 3)
+        The spheres' centres. Leading axes broadcast: rays `(R, 1, 3)` with centres `(S, 3)` give `(R, S)`.
+    radii : array_like, shape (...)
+        Their radii; 0 is a point, and a negative radius gives NaN.
+    method : {"robust", "quadratic", "geometric"}
+        The discriminant from the perpendicular vector; the quadratic equation as in textbooks; Pythagoras. See Notes.
+    t_min, t_max : float or array_like, shape (...)
+        `t` lies in the open interval, in units of the direction's length. `t_near` and `t_far` are the line's.
+    full_output : bool
+        Give `SphereDetails`: the nearest point, its distance from the centre and the discriminant as well.
+
+    Returns
+    -------
+    SphereHit or SphereDetails
+        Arrays of the batch's shape. From inside, `t_near` is negative and `t` is `t_far`. A line that touches has
+        `t_near = t_far`.
+
+    Raises
+    ------
+    TypeError, ValueError
+        If an argument is not real, not of its shape, or does not broadcast; a scalar interval holds NaN.
+
+    Notes
+    -----
+    Computed in the promoted precision of rays and spheres. NaN or infinity in a ray or a sphere, or a direction of no
+    length, gives NaN at that element. Offsets, radii and directions of every normal size are as good as unit ones.
+
+    *robust* carries the rounding errors of `origin - center`, of the perpendicular vector and of the origin's power.
+    Its discriminant is right to 4 machine epsilons of the squared radius at any distance up to a million radii, so a
+    line is decided wrongly only if it passes within 4 eps of the radius from touching. For lines with a chord of a
+    radius or more both roots are right to 4 eps of their own size, and 4 eps² of the radius: origins one rounding off
+    the surface are told apart. It costs about twice the others. (`discriminant` is in squared units of length, which
+    leave single precision beyond sizes of 1e19 and 1e-19; the roots do not.)
+
+    *quadratic* and *geometric* take the difference of squared distances: the discriminant is off by some eps times
+    the squared distance of the centre, so that in float32 spheres fray at 100 radii and dissolve at 4000. Near the
+    surface they leave `t_near` off by some eps of the radius, whatever its size: the self-intersections of ray tracers.
+
+    References
+    ----------
+    E. Haines, J. Günther, T. Akenine-Möller, *Precision Improvements for Ray/Sphere Intersection*, in *Ray Tracing
+    Gems*, 2019. T. Akenine-Möller, E. Haines et al., *Real-Time Rendering*, 4th edition, 2018, section 22.6.
+
+    Examples
+    --------
+    >>> hit = ray_sphere([0, 0, 3.0], [0, 0, -1.0], [0, 0, 0], 1.0)
+    >>> float(hit.t), float(hit.t_near), float(hit.t_far)
+    (2.0, 2.0, 4.0)
+    """
+    _arrays.choice("method", method, ("robust", "quadratic", "geometric"))
+    given = {"origins": (origins, 3), "directions": (directions, 3), "centers": (centers, 3), "radii": (radii, 0)}
+    knobs = {"t_min": t_min, "t_max": t_max}
+    out = [0] * (6 if full_output else 3)
+    found = _arrays.elementwise(_kernels.ray_sphere, given, out, method, bool(full_output), knobs=knobs)
+    return SphereDetails(*found) if full_output else SphereHit(*found)

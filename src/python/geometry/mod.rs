@@ -10,5 +10,7 @@ pub mod geometry {
     #[pymodule_export]
     use super::points::barycentric;
     #[pymodule_export]
+    use super::rays::ray_sphere;
+    #[pymodule_export]
     use super::rays::ray_triangle;
 }

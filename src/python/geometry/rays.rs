@@ -1,41 +1,60 @@
-//! Bindings of rays: ray_triangle.
+//! Bindings of rays: ray_sphere, ray_triangle.
 
+use crate::elementwise;
 use crate::geometry as kernels;
-use crate::geometry::ray_triangle::Method;
-use crate::python::array::{In, Out, run};
-use crate::real;
-use pyo3::exceptions::PyValueError;
+use crate::python::array::{Arrays, unknown};
 use pyo3::prelude::*;
+
+/// With `full` three more results: the line's nearest point, its distance, the discriminant.
+#[pyfunction]
+pub fn ray_sphere(
+    py: Python<'_>,
+    method: &str,
+    full: bool,
+    given: Arrays<'_>,
+    out: Arrays<'_>,
+) -> PyResult<()> {
+    use kernels::ray_sphere::{Method, ray_sphere};
+    let method = match method {
+        "robust" => Method::Robust,
+        "quadratic" => Method::Quadratic,
+        "geometric" => Method::Geometric,
+        _ => return Err(unknown("method", method)),
+    };
+    if !full {
+        return elementwise!(py, given, out,
+            |o: [T; 3], d: [T; 3], c: [T; 3], r: [T; 1], low: [T; 1], high: [T; 1]|
+            -> (t: [T; 1], near: [T; 1], far: [T; 1]) {
+                let hit = ray_sphere(method, o.into(), d.into(), c.into(), r[0], low[0], high[0]);
+                ([hit.t], [hit.near], [hit.far])
+            }
+        );
+    }
+    elementwise!(py, given, out,
+        |o: [T; 3], d: [T; 3], c: [T; 3], r: [T; 1], low: [T; 1], high: [T; 1]|
+        -> (t: [T; 1], near: [T; 1], far: [T; 1], closest: [T; 1], distance: [T; 1], discriminant: [T; 1]) {
+            let hit = ray_sphere(method, o.into(), d.into(), c.into(), r[0], low[0], high[0]);
+            ([hit.t], [hit.near], [hit.far], [hit.closest], [hit.distance], [hit.discriminant])
+        }
+    )
+}
 
 /// `out`: t, u, v.
 #[pyfunction]
-pub fn ray_triangle(
-    py: Python<'_>,
-    method: &str,
-    rays: [Bound<'_, PyAny>; 2],
-    triangles: [Bound<'_, PyAny>; 3],
-    interval: [Bound<'_, PyAny>; 2],
-    out: [Bound<'_, PyAny>; 3],
-) -> PyResult<()> {
+pub fn ray_triangle(py: Python<'_>, method: &str, given: Arrays<'_>, out: Arrays<'_>) -> PyResult<()> {
+    use kernels::ray_triangle::{Method, ray_triangle};
     let method = match method {
         "watertight" => Method::Watertight,
         "moller_trumbore" => Method::MollerTrumbore,
         "plane" => Method::Plane,
-        _ => return Err(PyValueError::new_err(format!("method: unknown, got {method:?}"))),
+        _ => return Err(unknown("method", method)),
     };
-    real!(&rays[0], T => {
-        let [o, d] = &rays;
-        let (o, d) = (In::<T>::of("origins", o)?, In::<T>::of("directions", d)?);
-        let [a, b, c] = &triangles;
-        let (a, b, c) = (In::<T>::of("a", a)?, In::<T>::of("b", b)?, In::<T>::of("c", c)?);
-        let [low, high] = &interval;
-        let (low, high) = (In::<T>::of("t_min", low)?, In::<T>::of("t_max", high)?);
-        let [t, u, v] = &out;
-        let (mut t, mut u, mut v) = (Out::<T>::of("t", t)?, Out::<T>::of("u", u)?, Out::<T>::of("v", v)?);
-        let (rays, triangles) = ([o.items()?, d.items()?], [a.items()?, b.items()?, c.items()?]);
-        let (interval, out) = ([low.slice()?, high.slice()?], [t.slice()?, u.slice()?, v.slice()?]);
-        run(py, None, |watch| {
-            kernels::ray_triangle::ray_triangle_many(watch, method, rays, triangles, interval, out)
-        })
-    })
+    elementwise!(py, given, out,
+        |o: [T; 3], d: [T; 3], a: [T; 3], b: [T; 3], c: [T; 3], low: [T; 1], high: [T; 1]|
+        -> (t: [T; 1], u: [T; 1], v: [T; 1]) {
+            let triangle = [a.into(), b.into(), c.into()];
+            let hit = ray_triangle(method, o.into(), d.into(), triangle, low[0], high[0]);
+            ([hit.t], [hit.u], [hit.v])
+        }
+    )
 }

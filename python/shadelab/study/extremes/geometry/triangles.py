@@ -1,4 +1,4 @@
-"""Extremes of `geometry`."""
+"""Extremes of rays at triangles and of barycentric coordinates."""
 
 from __future__ import annotations
 
@@ -8,8 +8,8 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from ... import geometry
-from ..stability import Measurement, extreme
+from .... import geometry
+from ...stability import Measurement, extreme
 
 Array = NDArray[Any]
 

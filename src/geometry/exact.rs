@@ -1,0 +1,72 @@
+//! Sums and products with the error of their rounding, and powers of two: what tests that must not lose digits are
+//! made of. All are exact unless parts overflow or fall below the normal numbers; nothing is fused.
+//!
+//! T. J. Dekker, *A Floating-Point Technique for Extending the Available Precision*, 1971;
+//! D. E. Knuth, *The Art of Computer Programming 2*, section 4.2.2.
+
+use crate::real::{Lanes, Real};
+use crate::vec::Vec3;
+
+/// `fl(a + b)` and what its rounding lost.
+#[inline(always)]
+pub fn two_sum<V: Lanes>(a: V, b: V) -> (V, V) {
+    let sum = a + b;
+    let part = sum - a;
+    (sum, (a - (sum - part)) + (b - part))
+}
+
+/// `fl(a - b)` and what its rounding lost.
+#[inline(always)]
+pub fn two_difference<V: Lanes>(a: V, b: V) -> (V, V) {
+    two_sum(a, -b)
+}
+
+/// `fl(a b)` and what its rounding lost.
+#[inline(always)]
+pub fn two_product<V: Lanes>(a: V, b: V) -> (V, V) {
+    (a * b, product_error(a, b))
+}
+
+/// `a b - fl(a b)`.
+#[inline(always)]
+pub fn product_error<V: Lanes>(a: V, b: V) -> V {
+    let ((ah, al), (bh, bl)) = (halves(a), halves(b));
+    ((ah * bh - a * b) + ah * bl + al * bh) + al * bl
+}
+
+/// The upper and the lower half of a significand: products of such halves are exact.
+#[inline(always)]
+fn halves<V: Lanes>(x: V) -> (V, V) {
+    // 2^ceil(digits / 2) + 1.
+    let cutter = if V::Elem::DOUBLE { 134217729.0 } else { 4097.0 };
+    let c = x * x.num(cutter);
+    let high = c - (c - x);
+    (high, x - high)
+}
+
+/// The largest magnitude among the components.
+#[inline(always)]
+pub fn largest<T: Real>(v: Vec3<T>) -> T {
+    Lanes::max(Lanes::max(v.x.abs(), v.y.abs()), v.z.abs())
+}
+
+/// Whether no component is infinite or NaN.
+#[inline(always)]
+pub fn all_finite<T: Real>(v: Vec3<T>) -> bool {
+    v.x.is_finite() & v.y.is_finite() & v.z.is_finite()
+}
+
+/// The exponent `e` of a positive number: it lies in `[√½, √2) 2^e`. Zero and numbers below the normal ones have the
+/// least, so that `2^-e` is finite always.
+#[inline(always)]
+pub fn exponent<T: Real>(x: T) -> T {
+    let limit = -T::MIN_POSITIVE.split_exponent().1;
+    Lanes::min(Lanes::max(x, T::MIN_POSITIVE).split_exponent().1, limit)
+}
+
+/// `x 2^e`, rounded once at most, for `|e|` up to twice the range of exponents.
+#[inline(always)]
+pub fn scaled<T: Real>(x: T, e: T) -> T {
+    let half = (e * T::of(0.5)).floor();
+    x * T::exp2i(half) * T::exp2i(e - half)
+}
