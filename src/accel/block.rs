@@ -45,32 +45,8 @@ pub fn leaf<const ANY: bool, T: Real, S: Simd>(
     ignore: i32,
     hit: &mut Hit<T>,
 ) -> bool {
-    let order = heading.order;
-    let origin = splat4x3::<T, S>(s, ray.origin.to_array());
-    let shear = splat4x3::<T, S>(s, ray.shear.to_array());
     for block in blocks {
-        let (a, b, c) = (corner(s, block, 0, order), corner(s, block, 1, order), corner(s, block, 2, order));
-        let Some((mask, x)) = watertight(origin.into(), shear.into(), a.into(), b.into(), c.into()) else {
-            continue;
-        };
-        let end = splat4::<T, S>(s, hit.t);
-        let mask = mask & Lanes::less(splat4::<T, S>(s, ray.t_min), x.t) & Lanes::less_eq(x.t, end);
-        if T::V4::<S>::bits(mask) == 0 {
-            continue;
-        }
-        // The hit must pass its triangle's own box, by the arithmetic of the nodes.
-        let (near, far) = own_box(heading, a, b, c);
-        let (entry, exit) = slabs(
-            near,
-            far,
-            splat4x3::<T, S>(s, in_order(order, ray.near)),
-            splat4x3::<T, S>(s, in_order(order, ray.far)),
-            splat4x3::<T, S>(s, in_order(order, ray.inverse)),
-        );
-        let passed = Lanes::less_eq(entry, exit) & Lanes::less_eq(splat4::<T, S>(s, ray.t_min), exit);
-        let t = Lanes::max(x.t, entry);
-        let mut bits = T::V4::<S>::bits(mask & passed & Lanes::less_eq(t, end));
-        let (t, u, v) = (t.to_array(), x.u.to_array(), x.v.to_array());
+        let Some(Hits { mut bits, t, u, v }) = test(s, block, ray, heading, hit.t) else { continue };
         while bits != 0 {
             let l = bits.trailing_zeros() as usize;
             bits &= bits - 1;
@@ -84,6 +60,71 @@ pub fn leaf<const ANY: bool, T: Real, S: Simd>(
         }
     }
     false
+}
+
+/// Tests the triangles of a leaf, and appends every hit.
+#[inline(always)]
+pub fn all<T: Real, S: Simd>(
+    s: S,
+    blocks: &[Block<T>],
+    ray: &Ready<T>,
+    heading: Heading,
+    ignore: i32,
+    found: &mut Vec<Hit<T>>,
+) {
+    for block in blocks {
+        let Some(Hits { mut bits, t, u, v }) = test(s, block, ray, heading, ray.t_max) else { continue };
+        while bits != 0 {
+            let l = bits.trailing_zeros() as usize;
+            bits &= bits - 1;
+            let face = block.faces[l];
+            if face != ignore && t[l] < ray.t_max {
+                found.push(Hit { t: t[l], u: u[l], v: v[l], face });
+            }
+        }
+    }
+}
+
+/// The triangles of a block that a ray hits after `t_min` and not after an end, as bits.
+struct Hits<T> {
+    bits: u32,
+    t: [T; BLOCK],
+    u: [T; BLOCK],
+    v: [T; BLOCK],
+}
+
+/// The rule by which all structures decide.
+#[inline(always)]
+fn test<T: Real, S: Simd>(
+    s: S,
+    block: &Block<T>,
+    ray: &Ready<T>,
+    heading: Heading,
+    end: T,
+) -> Option<Hits<T>> {
+    let order = heading.order;
+    let origin = splat4x3::<T, S>(s, ray.origin.to_array());
+    let shear = splat4x3::<T, S>(s, ray.shear.to_array());
+    let (a, b, c) = (corner(s, block, 0, order), corner(s, block, 1, order), corner(s, block, 2, order));
+    let (mask, x) = watertight(origin.into(), shear.into(), a.into(), b.into(), c.into())?;
+    let end = splat4::<T, S>(s, end);
+    let mask = mask & Lanes::less(splat4::<T, S>(s, ray.t_min), x.t) & Lanes::less_eq(x.t, end);
+    if T::V4::<S>::bits(mask) == 0 {
+        return None;
+    }
+    // The hit must pass its triangle's own box, by the arithmetic of the nodes.
+    let (near, far) = own_box(heading, a, b, c);
+    let (entry, exit) = slabs(
+        near,
+        far,
+        splat4x3::<T, S>(s, in_order(order, ray.near)),
+        splat4x3::<T, S>(s, in_order(order, ray.far)),
+        splat4x3::<T, S>(s, in_order(order, ray.inverse)),
+    );
+    let passed = Lanes::less_eq(entry, exit) & Lanes::less_eq(splat4::<T, S>(s, ray.t_min), exit);
+    let t = Lanes::max(x.t, entry);
+    let bits = T::V4::<S>::bits(mask & passed & Lanes::less_eq(t, end));
+    Some(Hits { bits, t: t.to_array(), u: x.u.to_array(), v: x.v.to_array() })
 }
 
 #[inline(always)]

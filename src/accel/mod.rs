@@ -1,5 +1,7 @@
 //! Acceleration structures for ray queries.
 //!
+//! All answer by one protocol, [`structure::Structure`], and alike to the bit.
+//!
 //! - [`Bvh`]: a tree of boxes; nearest and any hit, singly or in batches
 //! - [`brute_force`]: every triangle, by the same rule: what every structure must return
 //! - [`offset_ray`]: origins moved off their surface, so that rays do not meet it again
@@ -7,6 +9,7 @@
 mod block;
 mod bounds;
 mod ray;
+pub(crate) mod structure;
 
 pub mod brute_force;
 pub mod bvh;
@@ -16,6 +19,7 @@ pub(crate) mod query;
 
 use crate::real::Real;
 pub use bvh::Bvh;
+pub use structure::Structure;
 
 /// A ray; hits lie in the open interval `(t_min, t_max)`, in units of the direction's length, and not on `ignore_face`.
 #[derive(Clone, Copy, Debug)]

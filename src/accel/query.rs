@@ -1,13 +1,12 @@
 //! Arrays of rays in, arrays of hits out: cut into pieces for the threads.
 
-use super::{Bvh, Hit, Ray};
+use super::structure::{Counted, Stats, Structure, Uncounted};
+use super::{Hit, Ray};
 use crate::dispatch;
 use crate::parallel::{self, Interrupted, Pieces, Watch};
 use crate::real::Real;
 use crate::vec::Vec3;
-
-/// Rays a task: enough that the last rays of a task, with ever fewer beside them, do not matter.
-const PIECE: usize = 2048;
+use std::sync::{Mutex, PoisonError};
 
 /// Rays in arrays; intervals and ignored faces are one for all, or one a ray.
 #[derive(Clone, Copy)]
@@ -71,30 +70,154 @@ impl<T: Send> Pieces for Found<'_, T> {
     }
 }
 
-/// The nearest hits of arrays of rays.
-pub fn closest_hits<T: Real>(
-    watch: &mut dyn Watch,
-    tree: &Bvh<T>,
-    rays: &Rays<T>,
-    found: Found<T>,
-) -> Result<(), Interrupted> {
-    parallel::for_each(watch, found, PIECE, |first, mut found| {
-        let count = found.len();
-        dispatch!(s => tree.trace_batch::<false, _>(s, count, |i| rays.get(first + i), |i, hit| found.put(i, hit)))
-    })
+/// Every hit of every ray: those of ray `i` stand from `offsets[i]` to `offsets[i + 1]`, by `t`, then by face.
+#[derive(Debug, Default)]
+pub struct AllHits<T> {
+    pub offsets: Vec<i64>,
+    pub t: Vec<T>,
+    pub face: Vec<i32>,
+    pub u: Vec<T>,
+    pub v: Vec<T>,
 }
 
-/// Whether each of an array of rays hits anything.
-pub fn any_hits<T: Real>(
+/// What [`Queries::counts`] follows.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Query {
+    ClosestHit,
+    AnyHit,
+    AllHits,
+}
+
+/// Arrays of rays through any [`Structure`].
+pub trait Queries<T: Real>: Send + Sync {
+    /// The nearest hits.
+    fn closest_hits(&self, watch: &mut dyn Watch, rays: &Rays<T>, found: Found<T>)
+    -> Result<(), Interrupted>;
+    /// Whether each ray hits anything.
+    fn any_hits(&self, watch: &mut dyn Watch, rays: &Rays<T>, out: &mut [bool]) -> Result<(), Interrupted>;
+    /// Every hit. Memory is linear in hits, twice over for a moment.
+    fn all_hits(
+        &self,
+        watch: &mut dyn Watch,
+        rays: &Rays<T>,
+        count: usize,
+    ) -> Result<AllHits<T>, Interrupted>;
+    /// Boxes and triangles that each ray tests, one ray at a time.
+    fn counts(
+        &self,
+        watch: &mut dyn Watch,
+        rays: &Rays<T>,
+        query: Query,
+        out: (&mut [i32], &mut [i32]),
+    ) -> Result<(), Interrupted>;
+    /// The structure's size and make.
+    fn make(&self) -> Stats;
+}
+
+impl<T: Real, A: Structure<T>> Queries<T> for A {
+    fn closest_hits(
+        &self,
+        watch: &mut dyn Watch,
+        rays: &Rays<T>,
+        found: Found<T>,
+    ) -> Result<(), Interrupted> {
+        parallel::for_each(watch, found, self.rays_a_task(), |first, mut found| {
+            let count = found.len();
+            dispatch!(s => self.closest_batch(s, count, |i| rays.get(first + i), |i, hit| found.put(i, hit)))
+        })
+    }
+
+    fn any_hits(&self, watch: &mut dyn Watch, rays: &Rays<T>, out: &mut [bool]) -> Result<(), Interrupted> {
+        parallel::for_each(watch, out, self.rays_a_task(), |first, out: &mut [bool]| {
+            let count = out.len();
+            dispatch!(s => self.any_batch(s, count, |i| rays.get(first + i), |i, hit| out[i] = hit))
+        })
+    }
+
+    fn all_hits(
+        &self,
+        watch: &mut dyn Watch,
+        rays: &Rays<T>,
+        count: usize,
+    ) -> Result<AllHits<T>, Interrupted> {
+        let piece = self.rays_a_task().min(count.max(1));
+        let pieces: Vec<Mutex<Vec<Hit<T>>>> = (0..count.div_ceil(piece)).map(|_| Mutex::default()).collect();
+        // The number of each ray's hits, in the place of its end.
+        let mut offsets = vec![0i64; count + 1];
+        parallel::for_each(watch, &mut offsets[1..], piece, |first, ends: &mut [i64]| {
+            let mut found = Vec::new();
+            dispatch!(s => for (i, end) in ends.iter_mut().enumerate() {
+                let before = found.len();
+                Structure::all_hits(self, s, &rays.get(first + i), &mut Uncounted, &mut found);
+                *end = (found.len() - before) as i64;
+            });
+            *pieces[first / piece].lock().unwrap_or_else(PoisonError::into_inner) = found;
+        })?;
+        for i in 0..count {
+            offsets[i + 1] += offsets[i];
+        }
+        gather(watch, offsets, pieces)
+    }
+
+    fn counts(
+        &self,
+        watch: &mut dyn Watch,
+        rays: &Rays<T>,
+        query: Query,
+        out: (&mut [i32], &mut [i32]),
+    ) -> Result<(), Interrupted> {
+        parallel::for_each(
+            watch,
+            out,
+            self.rays_a_task(),
+            |first, (boxes, triangles): (&mut [i32], &mut [i32])| {
+                let mut found = Vec::new();
+                dispatch!(s => for i in 0..boxes.len() {
+                    let (ray, mut counted) = (rays.get(first + i), Counted::default());
+                    match query {
+                        Query::ClosestHit => drop(Structure::closest_hit(self, s, &ray, &mut counted)),
+                        Query::AnyHit => drop(Structure::any_hit(self, s, &ray, &mut counted)),
+                        Query::AllHits => {
+                            Structure::all_hits(self, s, &ray, &mut counted, &mut found);
+                            found.clear();
+                        }
+                    }
+                    (boxes[i], triangles[i]) = (counted.boxes as i32, counted.triangles as i32);
+                })
+            },
+        )
+    }
+
+    fn make(&self) -> Stats {
+        Structure::stats(self)
+    }
+}
+
+/// Brings the hits of all pieces into arrays, and frees each piece as it goes.
+fn gather<T: Real>(
     watch: &mut dyn Watch,
-    tree: &Bvh<T>,
-    rays: &Rays<T>,
-    out: &mut [bool],
-) -> Result<(), Interrupted> {
-    parallel::for_each(watch, out, PIECE, |first, out: &mut [bool]| {
-        let count = out.len();
-        dispatch!(s => tree.trace_batch::<true, _>(s, count, |i| rays.get(first + i), |i, hit| out[i] = hit.is_hit()))
-    })
+    offsets: Vec<i64>,
+    pieces: Vec<Mutex<Vec<Hit<T>>>>,
+) -> Result<AllHits<T>, Interrupted> {
+    let total = offsets.last().map_or(0, |&n| n as usize);
+    let (mut t, mut u, mut v) = (vec![T::zero(); total], vec![T::zero(); total], vec![T::zero(); total]);
+    let mut face = vec![0i32; total];
+    let mut rest = Found { t: &mut t, face: &mut face, u: &mut u, v: &mut v };
+    let mut tasks = Vec::with_capacity(pieces.len());
+    for piece in pieces {
+        let piece = piece.into_inner().unwrap_or_else(PoisonError::into_inner);
+        let (place, tail) = rest.cut(piece.len());
+        tasks.push(Mutex::new(Some((piece, place))));
+        rest = tail;
+    }
+    parallel::run(watch, tasks.len(), |i| {
+        let task = tasks[i].lock().unwrap_or_else(PoisonError::into_inner).take();
+        if let Some((piece, mut place)) = task {
+            piece.iter().enumerate().for_each(|(i, &hit)| place.put(i, hit));
+        }
+    })?;
+    drop(tasks);
+    Ok(AllHits { offsets, t, face, u, v })
 }
 
 /// Unit normals by winding of the faces that were hit; NaN where none was, and on faces without area.

@@ -1,12 +1,13 @@
 """Acceleration structures for ray queries, and the brute force that they must equal."""
 
 from . import brute, bvh, offset
-from ._rays import Hit
+from ._rays import AllHits, Hit
+from ._structure import Counts, Stats, Structure
 from .brute import *  # noqa: F403
 from .bvh import *  # noqa: F403
 from .offset import *  # noqa: F403
 
-__all__ = ["Hit"]
+__all__ = ["AllHits", "Counts", "Hit", "Stats", "Structure"]
 __all__ += brute.__all__
 __all__ += bvh.__all__
 __all__ += offset.__all__

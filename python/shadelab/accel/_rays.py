@@ -11,7 +11,7 @@ from numpy.typing import ArrayLike, NDArray
 from .. import _arrays
 from .._arrays import Floats
 
-__all__ = ["Hit", "Progress", "flat", "hit_arrays", "mesh_arrays", "ray_arrays"]
+__all__ = ["AllHits", "Hit", "Progress", "flat", "hit_arrays", "mesh_arrays", "ray_arrays"]
 
 Progress = bool | Callable[[int, int], object] | None
 
@@ -30,6 +30,22 @@ class Hit(NamedTuple):
     v: Floats
     normal: Floats | None = None
     """Unit normals of the faces by their winding, (..., 3), if asked for; NaN at misses and on faces without area."""
+
+
+class AllHits(NamedTuple):
+    """Every hit of a batch of rays, one ray after the other; each ray's by `t`, then by face."""
+
+    offsets: NDArray[np.int64]
+    """Where each ray's hits begin, and where the last one's end: (rays + 1,). Rays count in the batch's C order."""
+    t: Floats
+    face: NDArray[np.int32]
+    u: Floats
+    v: Floats
+
+    @property
+    def ray(self) -> NDArray[np.int64]:
+        """The index of each hit's ray in the flattened batch."""
+        return np.repeat(np.arange(len(self.offsets) - 1), np.diff(self.offsets))
 
 
 def mesh_arrays(positions: ArrayLike, faces: ArrayLike) -> tuple[Floats, NDArray[np.int32]]:

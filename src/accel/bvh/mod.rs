@@ -6,7 +6,9 @@ mod cut;
 mod node;
 mod packet;
 mod single;
+mod stats;
 mod stream;
+mod walk;
 
 use super::block::Block;
 use super::{Hit, Ray, bounds, ray};
@@ -21,18 +23,6 @@ pub struct Bvh<T> {
     blocks: Vec<Block<T>>,
     bounds: [[T; 3]; 2],
     faces: usize,
-}
-
-/// The size of a tree.
-#[derive(Clone, Copy, Debug)]
-pub struct Stats {
-    pub faces: usize,
-    pub nodes: usize,
-    pub blocks: usize,
-    pub bytes: usize,
-    /// Filled child slots a node, and triangles a block, on average.
-    pub children_per_node: f64,
-    pub triangles_per_block: f64,
 }
 
 impl<T: Real> Bvh<T> {
@@ -144,19 +134,6 @@ impl<T: Real> Bvh<T> {
     /// The number of triangles.
     pub fn faces(&self) -> usize {
         self.faces
-    }
-
-    pub fn stats(&self) -> Stats {
-        let (nodes, blocks) = (self.nodes.len(), self.blocks.len());
-        let filled = self.nodes.iter().flat_map(|n| n.children).filter(|&c| c != Child::EMPTY).count();
-        Stats {
-            faces: self.faces,
-            nodes,
-            blocks,
-            bytes: nodes * size_of::<Node<T>>() + blocks * size_of::<Block<T>>(),
-            children_per_node: filled as f64 / nodes as f64,
-            triangles_per_block: self.faces as f64 / (blocks as f64).max(1.0),
-        }
     }
 
     #[inline(always)]

@@ -12,11 +12,13 @@ pub mod accel {
     #[pymodule_export]
     use super::Tree;
     use super::rays::{HitArrays, RayArrays};
-    use super::tree::Held;
+    use super::tree::{self, Held, Other, queries};
     use crate::accel as kernels;
     use crate::accel::Bvh;
+    use crate::accel::query::Query;
     use crate::python::array::{In, Out, run};
     use crate::real;
+    use numpy::IntoPyArray;
     use pyo3::prelude::*;
 
     #[pyfunction]
@@ -36,22 +38,23 @@ pub mod accel {
     #[pyfunction]
     fn closest_hit(
         py: Python<'_>,
-        tree: &Tree,
+        structure: &Bound<'_, PyAny>,
         rays: [Bound<'_, PyAny>; 5],
         out: [Bound<'_, PyAny>; 4],
         progress: Option<Py<PyAny>>,
     ) -> PyResult<()> {
         real!(&rays[0], T => {
-            let (tree, rays, mut out) = (tree.of::<T>()?, RayArrays::<T>::of(&rays)?, HitArrays::of(&out)?);
+            let (structure, rays) = (queries::<T>(structure)?, RayArrays::<T>::of(&rays)?);
+            let mut out = HitArrays::of(&out)?;
             let (rays, found) = (rays.get()?, out.get()?);
-            run(py, progress, |watch| kernels::query::closest_hits(watch, tree, &rays, found))
+            run(py, progress, |watch| structure.closest_hits(watch, &rays, found))
         })
     }
 
     #[pyfunction]
     fn any_hit(
         py: Python<'_>,
-        tree: &Tree,
+        structure: &Bound<'_, PyAny>,
         rays: [Bound<'_, PyAny>; 5],
         out: &Bound<'_, PyAny>,
         progress: Option<Py<PyAny>>,
@@ -59,26 +62,61 @@ pub mod accel {
         let mut out = Out::<bool>::of("out", out)?;
         let out = out.slice()?;
         real!(&rays[0], T => {
-            let (tree, rays) = (tree.of::<T>()?, RayArrays::<T>::of(&rays)?);
+            let (structure, rays) = (queries::<T>(structure)?, RayArrays::<T>::of(&rays)?);
             let rays = rays.get()?;
-            run(py, progress, |watch| kernels::query::any_hits(watch, tree, &rays, out))
+            run(py, progress, |watch| structure.any_hits(watch, &rays, out))
         })
     }
 
+    /// Offsets, t, face, u, v.
     #[pyfunction]
-    fn brute_force(
+    fn all_hits<'py>(
+        py: Python<'py>,
+        structure: &Bound<'py, PyAny>,
+        rays: [Bound<'py, PyAny>; 5],
+        progress: Option<Py<PyAny>>,
+    ) -> PyResult<[Bound<'py, PyAny>; 5]> {
+        real!(&rays[0], T => {
+            let (structure, rays) = (queries::<T>(structure)?, RayArrays::<T>::of(&rays)?);
+            let rays = rays.get()?;
+            let a = run(py, progress, |watch| structure.all_hits(watch, &rays, rays.origins.len()))?;
+            let (offsets, face) = (a.offsets.into_pyarray(py).into_any(), a.face.into_pyarray(py).into_any());
+            let [t, u, v] = [a.t, a.u, a.v].map(|x| x.into_pyarray(py).into_any());
+            Ok([offsets, t, face, u, v])
+        })
+    }
+
+    /// Boxes and triangles that each ray tests in answering a query.
+    #[pyfunction]
+    fn counts(
         py: Python<'_>,
-        positions: &Bound<'_, PyAny>,
-        faces: &Bound<'_, PyAny>,
+        query: &str,
+        structure: &Bound<'_, PyAny>,
         rays: [Bound<'_, PyAny>; 5],
-        out: [Bound<'_, PyAny>; 4],
+        out: [Bound<'_, PyAny>; 2],
         progress: Option<Py<PyAny>>,
     ) -> PyResult<()> {
+        let query = match query {
+            "closest_hit" => Query::ClosestHit,
+            "any_hit" => Query::AnyHit,
+            _ => Query::AllHits,
+        };
+        let (mut boxes, mut triangles) =
+            (Out::<i32>::of("boxes", &out[0])?, Out::<i32>::of("triangles", &out[1])?);
+        let (boxes, triangles) = (boxes.slice()?, triangles.slice()?);
         real!(&rays[0], T => {
+            let (structure, rays) = (queries::<T>(structure)?, RayArrays::<T>::of(&rays)?);
+            let rays = rays.get()?;
+            run(py, progress, |watch| structure.counts(watch, &rays, query, (boxes, triangles)))
+        })
+    }
+
+    /// Every triangle, as a structure.
+    #[pyfunction]
+    fn brute_force(positions: &Bound<'_, PyAny>, faces: &Bound<'_, PyAny>) -> PyResult<Other> {
+        real!(positions, T => {
             let (p, f) = (In::<T>::of("positions", positions)?, In::<i32>::of("faces", faces)?);
-            let (p, f, rays, mut out) = (p.items()?, f.items()?, RayArrays::<T>::of(&rays)?, HitArrays::of(&out)?);
-            let (rays, found) = (rays.get()?, out.get()?);
-            run(py, progress, |watch| kernels::brute_force::closest_hits(watch, p, f, &rays, found))
+            Ok(tree::brute_force(p.items()?, f.items()?))
         })
     }
 
