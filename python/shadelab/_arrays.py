@@ -113,8 +113,8 @@ def indices(name: str, value: ArrayLike, n: int | None = None, below: int | None
     if n is not None and (array.ndim != 2 or array.shape[-1] != n):
         raise ValueError(f"{name}: expected shape (m, {n}), got {array.shape}")
     limit = np.iinfo(np.int32).max if below is None else below - 1
-    bad = (array < 0) | (array > limit)
-    if bad.any():
+    if array.size and (array.min() < 0 or array.max() > limit):
+        bad = (array < 0) | (array > limit)
         at = tuple(int(i) for i in np.argwhere(bad)[0])
         raise ValueError(f"{name}: index {array[at]} at {at} is out of range [0, {limit + 1})")
     return np.require(array, dtype=np.int32, requirements=["C", "A"])

@@ -20,9 +20,11 @@ pub struct Block<T> {
 }
 
 impl<T: Real> Block<T> {
+    pub const EMPTY: Block<T> = Block { vertices: [[[T::NAN; BLOCK]; 3]; 3], faces: [-1; BLOCK] };
+
     /// From at most four faces and their corners.
     pub fn new(triangles: impl Iterator<Item = (i32, [[T; 3]; 3])>) -> Self {
-        let mut block = Block { vertices: [[[T::NAN; BLOCK]; 3]; 3], faces: [-1; BLOCK] };
+        let mut block = Block::EMPTY;
         for (lane, (face, corners)) in triangles.enumerate() {
             block.faces[lane] = face;
             for (vertex, p) in corners.iter().enumerate() {

@@ -13,6 +13,7 @@ pub(crate) mod structure;
 
 pub mod brute_force;
 pub mod bvh;
+pub mod morton;
 pub mod offset_ray;
 #[cfg_attr(not(feature = "python"), allow(dead_code))] // arrays of rays come from Python alone
 pub(crate) mod query;

@@ -56,17 +56,18 @@ def mesh_arrays(positions: ArrayLike, faces: ArrayLike) -> tuple[Floats, NDArray
     f = _arrays.indices("faces", array.reshape(0, 3) if array.size == 0 else array, 3, p.shape[0])
     if f.shape[0] > 2**27:
         raise ValueError(f"faces: expected at most {2**27}, got {f.shape[0]}")
-    if not np.isfinite(p).all():
-        at = int(np.argwhere(~np.isfinite(p).all(-1))[0, 0])
-        raise ValueError(f"positions: vertex {at} is not finite: {p[at].tolist()}")
     if len(p):
+        # Column by column: extremes along the short axis of an array are slow.
+        low, high = (np.array([extreme(p[:, k]) for k in range(3)], float) for extreme in (np.min, np.max))
+        if not (np.isfinite(low).all() and np.isfinite(high).all()):
+            at = int(np.argwhere(~np.isfinite(p).all(-1))[0, 0])
+            raise ValueError(f"positions: vertex {at} is not finite: {p[at].tolist()}")
         # Products of three edges must neither overflow nor vanish.
         largest, smallest = (1e18, 1e-12) if p.dtype == np.float32 else (1e150, 1e-100)
-        far = np.abs(p).max(-1)
-        if far.max() > largest:
-            at = int(far.argmax())
+        if max(-low.min(), high.max()) > largest:
+            at = int(np.abs(p).max(-1).argmax())
             raise ValueError(f"positions: vertex {at} lies beyond {largest:g}: {p[at].tolist()}; scale the mesh down")
-        extent = float(np.ptp(p, axis=0).max())
+        extent = float((high - low).max())
         if 0.0 < extent < smallest:
             raise ValueError(f"positions: extent {extent:g} is below {smallest:g}; scale the mesh up")
     return p, f

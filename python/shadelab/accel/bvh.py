@@ -2,13 +2,19 @@
 
 from __future__ import annotations
 
+from typing import Literal
+
 from numpy.typing import ArrayLike
 
+from .. import _arrays
 from .._kernels import accel as _kernels
 from ._rays import Progress
 from ._structure import Structure
 
 __all__ = ["BVH"]
+
+
+Method = Literal["sah", "median", "lbvh"]
 
 
 class BVH(Structure):
@@ -20,6 +26,8 @@ class BVH(Structure):
         Vertices. Their dtype, float32 or float64, governs every query.
     faces : array_like of int, shape (F, 3)
         Indices of vertices; at most 2**27 faces, also none.
+    method : {"sah", "median", "lbvh"}
+        Binned surface area heuristic; halves by the order of centres; or Morton order. See Notes.
     progress : bool or callable, optional
         True for a bar, or called with (done, total).
 
@@ -55,5 +63,8 @@ class BVH(Structure):
     (array([ 2., inf], dtype=float32), array([ 0, -1], dtype=int32), array([0.25, 0.  ], dtype=float32), array([0.5, 0. ], dtype=float32))
     """  # noqa: E501
 
-    def __init__(self, positions: ArrayLike, faces: ArrayLike, *, progress: Progress = None) -> None:
-        self._build(positions, faces, _kernels.build, progress)
+    def __init__(
+        self, positions: ArrayLike, faces: ArrayLike, method: Method = "sah", *, progress: Progress = None
+    ) -> None:
+        _arrays.choice("method", method, ("sah", "median", "lbvh"))
+        self._build(positions, faces, _kernels.build, progress, method)

@@ -19,11 +19,13 @@ pub struct Cut {
 }
 
 impl Costs {
+    #[inline]
     pub fn leaf(cost: f32) -> Self {
         Costs([cost; WIDTH - 1])
     }
 
     /// Of a branch, from its halves. `node` is the cost of a node there, `leaf` that of all triangles in one leaf.
+    #[inline(always)]
     pub fn inner(left: &Costs, right: &Costs, node: f32, leaf: f32) -> (Self, Cut) {
         let best = |slots: usize| {
             let split = |k: usize| (left.0[k - 1] + right.0[slots - k - 1], k as u8);
@@ -45,14 +47,17 @@ impl Costs {
 impl Cut {
     pub const LEAF: Cut = Cut { node: 0, children: [0; WIDTH - 1] };
 
+    #[inline]
     pub fn is_leaf(&self) -> bool {
         self.node == 0
     }
     /// Slots of the left and the right half below a node of its own.
+    #[inline]
     pub fn below(&self) -> (usize, usize) {
         (self.node as usize, WIDTH - self.node as usize)
     }
     /// Slots of the halves as at most `slots` children of the node above; None where it is one child.
+    #[inline]
     pub fn across(&self, slots: usize) -> Option<(usize, usize)> {
         let cheapest = (2..=slots).rev().find(|&i| self.children[i - 1] != 0)?;
         let left = self.children[cheapest - 1] as usize;

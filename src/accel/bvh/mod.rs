@@ -1,8 +1,10 @@
 //! A bounding volume hierarchy: nodes of eight boxes over blocks of four triangles.
 
+mod boxes;
 mod build;
 mod collapse;
 mod cut;
+mod lbvh;
 mod node;
 mod packet;
 mod single;
@@ -16,6 +18,7 @@ use crate::parallel::{self, Interrupted, Watch};
 use crate::real::Real;
 use crate::simd::Simd;
 use node::{Child, Node};
+use std::sync::atomic::Ordering;
 
 /// A tree of boxes, eight children a node, over triangles in blocks of four.
 pub struct Bvh<T> {
@@ -23,6 +26,17 @@ pub struct Bvh<T> {
     blocks: Vec<Block<T>>,
     bounds: [[T; 3]; 2],
     faces: usize,
+}
+
+/// How a tree is built.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Method {
+    /// Binned surface area heuristic: the best to trace.
+    Sah,
+    /// Halves by the order of centres.
+    Median,
+    /// Morton order: the fastest to build.
+    Lbvh,
 }
 
 impl<T: Real> Bvh<T> {
@@ -34,14 +48,27 @@ impl<T: Real> Bvh<T> {
         watch: &mut dyn Watch,
         positions: &[[T; 3]],
         faces: &[[i32; 3]],
+        method: Method,
     ) -> Result<Self, Interrupted> {
         assert!(faces.len() <= Self::MAX_FACES);
         parallel::run_forking(watch, |stop| {
             let scene = bounds::scene_bounds(positions, faces);
-            let mut items = bounds::items(positions, faces, &scene);
-            let branches = build::binary_tree(&mut items, stop);
-            let source = collapse::Source { positions, faces, items: &items, branches: &branches };
-            let wide = collapse::collapse(&source);
+            let relative = boxes::Relative::to(&scene);
+            let wide = match method {
+                Method::Lbvh => {
+                    let sorted = lbvh::Sorted::new(positions, faces, relative);
+                    collapse::collapse(&sorted, sorted.root(), positions, faces)
+                }
+                Method::Sah | Method::Median => {
+                    let split = if method == Method::Sah { build::Split::Sah } else { build::Split::Median };
+                    let mut items = boxes::items(positions, faces, relative);
+                    let branches = build::binary_tree(&mut items, split, stop);
+                    // What was cut short is of no use, nor is it a tree.
+                    let faces = if stop.load(Ordering::Relaxed) { &[] } else { faces };
+                    let cuts = collapse::Cuts { items: &items, branches: &branches };
+                    collapse::collapse(&cuts, 0, positions, faces)
+                }
+            };
             Bvh { nodes: wide.nodes, blocks: wide.blocks, bounds: scene, faces: faces.len() }
         })
     }

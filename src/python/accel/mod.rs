@@ -15,10 +15,12 @@ pub mod accel {
     use super::tree::{self, Held, Other, queries};
     use crate::accel as kernels;
     use crate::accel::Bvh;
+    use crate::accel::bvh::Method;
     use crate::accel::query::Query;
     use crate::python::array::{In, Out, run};
     use crate::real;
     use numpy::IntoPyArray;
+    use pyo3::exceptions::PyValueError;
     use pyo3::prelude::*;
 
     #[pyfunction]
@@ -26,12 +28,19 @@ pub mod accel {
         py: Python<'_>,
         positions: &Bound<'_, PyAny>,
         faces: &Bound<'_, PyAny>,
+        method: &str,
         progress: Option<Py<PyAny>>,
     ) -> PyResult<Tree> {
+        let method = match method {
+            "sah" => Method::Sah,
+            "median" => Method::Median,
+            "lbvh" => Method::Lbvh,
+            _ => return Err(PyValueError::new_err(format!("method: unknown, got {method:?}"))),
+        };
         real!(positions, T => {
             let (p, f) = (In::<T>::of("positions", positions)?, In::<i32>::of("faces", faces)?);
             let (p, f) = (p.items()?, f.items()?);
-            Ok(Held::wrap(run(py, progress, |watch| Bvh::build(watch, p, f))?))
+            Ok(Held::wrap(run(py, progress, |watch| Bvh::build(watch, p, f, method))?))
         })
     }
 
