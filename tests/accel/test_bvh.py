@@ -32,12 +32,13 @@ def rays_of(kind, rng, n):
 @pytest.mark.parametrize("dtype", [np.float32, np.float64])
 @pytest.mark.parametrize("kind", ["random", "axis-parallel", "coherent", "tiny", "huge"])
 @pytest.mark.parametrize("level", sl.simd_levels())
-def test_tree_equals_brute_force_to_the_bit(dtype, kind, level):
+@pytest.mark.parametrize("method", ["sah", "median", "lbvh"])
+def test_tree_equals_brute_force_to_the_bit(dtype, kind, level, method):
     rng = np.random.default_rng(3)
     p, f = soup(rng, 700, dtype)
     o, d = rays_of(kind, rng, 4096)
     expected = sl.accel.brute_force(p, f, o, d)
-    bvh = sl.accel.BVH(p, f)
+    bvh = sl.accel.BVH(p, f, method)
     with sl.simd(level):
         hit = bvh.closest_hit(o, d)
         assert same_bits(hit, expected)
@@ -153,3 +154,51 @@ def test_meshes_at_the_ends_of_the_domain_are_hit(dtype, held):
         bvh = sl.accel.BVH(triangle * size, [[0, 1, 2]])
         hit = bvh.closest_hit(np.array([0.25, 0.5, 2], dtype) * size, np.array([0, 0, -1], dtype))
         assert hit.face == 0 and np.isclose(hit.t / size, 2, rtol=1e-6)
+
+
+def makes(rng):
+    """Meshes that builders stumble over: name, positions, faces."""
+    p, f = soup(rng, 3000, np.float64, 0.01)
+    yield "one place", np.tile(p[:3], (3000, 1)), f
+    yield (
+        "one centre",
+        (p[:3] - p[:3].mean(0))[None].repeat(3000, 0).reshape(-1, 3) * np.repeat(rng.normal(size=(3000, 1)), 3, 0),
+        f,
+    )
+    yield "a line", p * [1, 0, 0] + [0, 1, 2], f
+    yield "nested scales", p * np.repeat(10.0 ** rng.uniform(-9, 0, (3000, 1)), 3, 0), f
+    yield "two far clusters", p + np.repeat(rng.choice([0, 1e6], (3000, 1)), 3, 0), f
+    yield "a fan of needles", np.where(np.arange(9000)[:, None] % 3 == 0, 0.0, p), f
+
+
+@pytest.mark.parametrize("method", ["sah", "median", "lbvh"])
+@pytest.mark.parametrize("dtype", [np.float32, np.float64])
+def test_every_builder_holds_whatever_the_mesh(method, dtype):
+    rng = np.random.default_rng(11)
+    d = rng.normal(size=(2000, 3))
+    for name, p, f in makes(rng):
+        p = p.astype(dtype)
+        # At the mesh, from near by, so that small parts are met too.
+        at = p[rng.integers(len(p), size=2000)]
+        hit = sl.accel.BVH(p, f, method).closest_hit(at - 1e-3 * d, d)
+        assert same_bits(hit, sl.accel.brute_force(p, f, at - 1e-3 * d, d)), name
+
+
+@pytest.mark.parametrize("method", ["sah", "median", "lbvh"])
+def test_trees_do_not_depend_on_threads(method):
+    """Large enough that lists are cut, binned and written by several tasks."""
+    p, f = soup(np.random.default_rng(12), 40_000, np.float32)
+    found = []
+    for n in (1, 3):
+        sl.set_threads(n)
+        bvh = sl.accel.BVH(p, f, method)
+        o, d = np.random.default_rng(13).normal(size=(2, 3000, 3))
+        found.append((bvh.stats()._replace(build_ms=0), bvh.counts(o, d)))
+    sl.set_threads(None)
+    assert found[0][0] == found[1][0]
+    assert all(np.array_equal(a, b) for a, b in zip(found[0][1], found[1][1], strict=True))
+
+
+def test_unknown_methods_are_named():
+    with pytest.raises(ValueError, match="method: expected one of"):
+        sl.accel.BVH(np.eye(3), [[0, 1, 2]], "best")

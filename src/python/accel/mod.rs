@@ -1,5 +1,6 @@
 //! Bindings of `accel`: bvh, brute_force, offset_ray.
 
+mod morton;
 mod rays;
 mod tree;
 
@@ -11,6 +12,8 @@ use pyo3::prelude::*;
 pub mod accel {
     #[pymodule_export]
     use super::Tree;
+    #[pymodule_export]
+    use super::morton::{morton_decode, morton_encode, radix_tree};
     use super::rays::{HitArrays, RayArrays};
     use super::tree::{self, Held, Other, queries};
     use crate::accel as kernels;
