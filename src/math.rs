@@ -23,6 +23,7 @@
 //! W. Cody, W. Waite, *Software Manual for the Elementary Functions*, 1980 (reduction of the argument in parts);
 //! T. Dekker, *A floating-point technique for extending the available precision*, 1971 (products with remainder).
 
+pub mod exact;
 mod map;
 mod minimax;
 mod pow;

@@ -164,6 +164,14 @@ impl<V: Lanes> Vec4<V> {
     pub fn dot(self, o: Self) -> V {
         self.x * o.x + self.y * o.y + self.z * o.z + self.w * o.w
     }
+    /// The unit vector, as [`Vec3::normalize`].
+    #[inline(always)]
+    pub fn normalize(self) -> Self {
+        let largest = self.x.abs().max(self.y.abs()).max(self.z.abs().max(self.w.abs()));
+        let v = self.map(|c| c / largest);
+        let length = v.dot(v).sqrt();
+        v.map(|c| c / length)
+    }
     #[inline(always)]
     pub fn xyz(self) -> Vec3<V> {
         Vec3 { x: self.x, y: self.y, z: self.z }

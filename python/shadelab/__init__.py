@@ -4,7 +4,7 @@ Every technique of the real-time renderer is a function over arrays and stands b
 approximates; `shadelab.study` measures what each costs and what it loses. Chapters, from the ground up:
 
 transform
-    Model, view, projection, viewport; points through them.
+    Model, view, projection, viewport; rotations and quaternions; points through them.
 sampling
     Generators, sequences, and warps with their densities.
 image

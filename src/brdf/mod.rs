@@ -6,7 +6,6 @@
 //! - [`ggx`]: rough mirrors
 //! - [`metallic_roughness`]: the material of real-time shading and path tracing alike
 
-pub(crate) mod frame;
 pub mod fresnel;
 pub mod ggx;
 pub mod lambert;

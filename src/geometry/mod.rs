@@ -6,6 +6,7 @@
 //! - [`ray_triangle`]: a ray against a triangle: watertight, Möller-Trumbore, plane
 
 pub mod barycentric;
-pub(crate) mod exact;
 pub mod ray_sphere;
 pub mod ray_triangle;
+
+pub(crate) use crate::math::exact;

@@ -12,11 +12,11 @@
 //! J. H. Lambert, *Photometria*, 1760; J. Arvo, *Applications of irradiance tensors to the simulation of non-Lambertian
 //! phenomena*, 1995.
 
-use crate::brdf::frame::Frame;
 use crate::dispatch;
 use crate::math;
 use crate::parallel::{self, Interrupted, Watch};
 use crate::real::Real;
+use crate::transform::orthonormal_basis::Frame;
 use crate::vec::Vec3;
 
 /// Orders 0 … 6.

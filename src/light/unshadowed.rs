@@ -10,13 +10,13 @@
 use super::Light;
 use super::irradiance::rect_moments;
 use super::rect::Rect;
-use crate::brdf::frame::Frame;
 use crate::brdf::ggx;
 use crate::brdf::metallic_roughness::{Lobes, Materials};
 use crate::dispatch;
 use crate::parallel::{self, Interrupted, Watch};
 use crate::real::Real;
 use crate::sampling::sobol::{Scramble, columns, sobol};
+use crate::transform::orthonormal_basis::Frame;
 use crate::vec::Vec3;
 
 /// Where surfaces are seen from.

@@ -2,10 +2,10 @@
 
 use super::Emitters;
 use crate::accel::{Bvh, Hit};
-use crate::brdf::frame::Frame;
 use crate::brdf::metallic_roughness::{Lobes, Materials};
 use crate::light::Light;
 use crate::real::Real;
+use crate::transform::orthonormal_basis::Frame;
 use crate::vec::Vec3;
 
 /// A scene in world space. Indices are in range, and every face has a material.

@@ -3,16 +3,28 @@
 //! Right-handed, y up; cameras look down -z. Every function works on batches; matrices are stored by rows as NumPy
 //! has them.
 //!
-//! - [`affine`]: translation, scaling, rotation about an axis
-//! - [`view`]: the view matrix of an eye that looks at a target
-//! - [`projection`]: perspective and orthographic projections, viewport, linear depth
+//! - [`affine`]: translation, scaling, shear, rotation about an axis; the same in the plane
+//! - [`compose`]: affine matrices from translation, rotation, scale, shear, and back
+//! - [`depth_precision`]: what a depth buffer tells apart at a distance
+//! - [`euler`]: rotations by three angles, in every order, and back
 //! - [`normal_matrix`]: the matrix that carries normals
+//! - [`orthonormal_basis`]: a frame about a normal
 //! - [`points`]: points, vectors and normals through matrices; pixels and back
+//! - [`projection`]: perspective and orthographic projections, viewport, linear depth
+//! - [`quaternion`]: products, rotation, interpolation, matrices and back
+//! - [`vectors`]: the angle between two, and parts of one along the other
+//! - [`view`]: the view matrix of an eye that looks at a target; rigid inverses, change of basis
 
 pub mod affine;
+pub mod compose;
+pub mod depth_precision;
+pub mod euler;
 pub mod normal_matrix;
+pub mod orthonormal_basis;
 pub mod points;
 pub mod projection;
+pub mod quaternion;
+pub mod vectors;
 pub mod view;
 
 /// A matrix by rows.

@@ -2,7 +2,7 @@
 //!
 //! One matrix serves a whole array, or each point has its own. What lies behind the eye (w ≤ 0) has no pixel: NaN.
 
-use super::{Rows4, normal_matrix::normal_matrix};
+use super::{Rows3, Rows4, normal_matrix::normal_matrix};
 use crate::dispatch;
 use crate::parallel::{self, Interrupted, Watch};
 use crate::real::Real;
@@ -30,19 +30,24 @@ pub fn transform<T: Real>(
     out: &mut [[T; 3]],
 ) -> Result<(), Interrupted> {
     match kind {
-        Kind::Point => {
-            map(watch, points, matrices, out, Mat4::from_rows, |m, p| over_w(m.mul_point(p)).to_array())
-        }
-        Kind::Vector => {
-            map(watch, points, matrices, out, |r| Mat4::from_rows(r).mat3(), |m, p| m.mul_vec(p).to_array())
-        }
+        Kind::Point => map(watch, points, matrices, out, Mat4::from_rows, |m, p| {
+            over_w(m.mul_point(p.into())).to_array()
+        }),
+        Kind::Vector => map(
+            watch,
+            points,
+            matrices,
+            out,
+            |r| Mat4::from_rows(r).mat3(),
+            |m, p| m.mul_vec(p.into()).to_array(),
+        ),
         Kind::Normal => map(
             watch,
             points,
             matrices,
             out,
             |r| normal_matrix(Mat4::from_rows(r).mat3()),
-            |m: &Mat3<T>, p| m.mul_vec(p).normalize().to_array(),
+            |m: &Mat3<T>, p| m.mul_vec(p.into()).normalize().to_array(),
         ),
     }
 }
@@ -54,7 +59,42 @@ pub fn homogeneous<T: Real>(
     matrices: &[Rows4<T>],
     out: &mut [[T; 4]],
 ) -> Result<(), Interrupted> {
-    map(watch, points, matrices, out, Mat4::from_rows, |m, p| m.mul_point(p).to_array())
+    map(watch, points, matrices, out, Mat4::from_rows, |m, p| m.mul_point(p.into()).to_array())
+}
+
+/// [`transform`] in the plane; normals have no kind of their own there.
+pub fn transform_2d<T: Real>(
+    watch: &mut dyn Watch,
+    kind: Kind,
+    points: &[[T; 2]],
+    matrices: &[Rows3<T>],
+    out: &mut [[T; 2]],
+) -> Result<(), Interrupted> {
+    if kind == Kind::Point {
+        map(watch, points, matrices, out, Mat3::from_rows, |m, p| {
+            let Vec3 { x, y, z } = plane_point(m, p);
+            [x / z, y / z]
+        })
+    } else {
+        map(watch, points, matrices, out, Mat3::from_rows, |Mat3([a, b, _]), [x, y]| {
+            [a.x * x + b.x * y, a.y * x + b.y * y]
+        })
+    }
+}
+
+/// [`homogeneous`] in the plane.
+pub fn homogeneous_2d<T: Real>(
+    watch: &mut dyn Watch,
+    points: &[[T; 2]],
+    matrices: &[Rows3<T>],
+    out: &mut [[T; 3]],
+) -> Result<(), Interrupted> {
+    map(watch, points, matrices, out, Mat3::from_rows, |m, p| plane_point(m, p).to_array())
+}
+
+#[inline(always)]
+fn plane_point<T: Real>(&Mat3([a, b, c]): &Mat3<T>, [x, y]: [T; 2]) -> Vec3<T> {
+    a * x + b * y + c
 }
 
 /// Points to pixels of a picture of `size` (x right, y down) and depth z/w.
@@ -67,7 +107,7 @@ pub fn project<T: Real>(
 ) -> Result<(), Interrupted> {
     let half = size.map(|s| s * T::of(0.5));
     map(watch, points, matrices, out, Mat4::from_rows, |m: &Mat4<T>, p| {
-        let clip = m.mul_point(p);
+        let clip = m.mul_point(p.into());
         let visible = if clip.w > T::zero() { clip.w } else { T::NAN };
         let ndc = clip.xyz().map(|c| c / visible);
         [(ndc.x + T::one()) * half[0], (T::one() - ndc.y) * half[1], ndc.z]
@@ -83,8 +123,8 @@ pub fn unproject<T: Real>(
     out: &mut [[T; 3]],
 ) -> Result<(), Interrupted> {
     let twice = size.map(|s| T::of(2.0) / s);
-    map(watch, pixels, inverses, out, Mat4::from_rows, |m, p: Vec3<T>| {
-        let ndc = Vec3::new(p.x * twice[0] - T::one(), T::one() - p.y * twice[1], p.z);
+    map(watch, pixels, inverses, out, Mat4::from_rows, |m, [x, y, z]| {
+        let ndc = Vec3::new(x * twice[0] - T::one(), T::one() - y * twice[1], z);
         over_w(m.mul_point(ndc)).to_array()
     })
 }
@@ -104,13 +144,13 @@ fn over_w<T: Real>(p: Vec4<T>) -> Vec3<T> {
 }
 
 /// Applies `f` to each item and what `prepare` made of its matrix; a common matrix is prepared once.
-fn map<T: Real, M: Sync, const N: usize>(
+fn map<T: Real, R: Copy + Sync, M: Sync, const D: usize, const N: usize>(
     watch: &mut dyn Watch,
-    points: &[[T; 3]],
-    matrices: &[Rows4<T>],
+    points: &[[T; D]],
+    matrices: &[R],
     out: &mut [[T; N]],
-    prepare: impl Fn(Rows4<T>) -> M + Sync,
-    f: impl Fn(&M, Vec3<T>) -> [T; N] + Sync,
+    prepare: impl Fn(R) -> M + Sync,
+    f: impl Fn(&M, [T; D]) -> [T; N] + Sync,
 ) -> Result<(), Interrupted> {
     if let [common] = matrices {
         let m = prepare(*common);
@@ -118,7 +158,7 @@ fn map<T: Real, M: Sync, const N: usize>(
             watch,
             (points, out),
             PIECE,
-            |_, (points, out): (&[[T; 3]], &mut [[T; N]])| dispatch!(_s => common_body(points, out, |p| f(&m, p))),
+            |_, (points, out): (&[[T; D]], &mut [[T; N]])| dispatch!(_s => common_body(points, out, |p| f(&m, p))),
         )
     } else {
         parallel::for_each(
@@ -131,24 +171,24 @@ fn map<T: Real, M: Sync, const N: usize>(
 }
 
 #[inline(always)]
-fn common_body<T: Real, const N: usize>(
-    points: &[[T; 3]],
+fn common_body<T: Real, const D: usize, const N: usize>(
+    points: &[[T; D]],
     out: &mut [[T; N]],
-    f: impl Fn(Vec3<T>) -> [T; N],
+    f: impl Fn([T; D]) -> [T; N],
 ) {
     for (out, &p) in out.iter_mut().zip(points) {
-        *out = f(p.into());
+        *out = f(p);
     }
 }
 
 #[inline(always)]
-fn each_body<T: Real, const N: usize>(
-    points: &[[T; 3]],
-    matrices: &[Rows4<T>],
+fn each_body<T: Real, R: Copy, const D: usize, const N: usize>(
+    points: &[[T; D]],
+    matrices: &[R],
     out: &mut [[T; N]],
-    f: impl Fn(Rows4<T>, Vec3<T>) -> [T; N],
+    f: impl Fn(R, [T; D]) -> [T; N],
 ) {
     for ((out, &p), &m) in out.iter_mut().zip(points).zip(matrices) {
-        *out = f(m, p.into());
+        *out = f(m, p);
     }
 }

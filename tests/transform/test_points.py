@@ -74,3 +74,28 @@ def test_what_lies_behind_the_eye_has_no_pixel():
 def test_a_singular_matrix_has_no_way_back():
     with pytest.raises(ValueError, match="matrix: expected an invertible matrix"):
         unproject([0.0, 0.0, 0.0], np.zeros((4, 4)), (64, 64))
+
+
+@pytest.mark.parametrize("dtype", [np.float32, np.float64])
+@pytest.mark.parametrize("shape", [(), (0,), (50_000,), (3, 5)])
+def test_points_of_the_plane_go_through_matrices_of_the_plane(shape, dtype):
+    rng = np.random.default_rng(6)
+    p, m = rng.normal(size=(*shape, 2)).astype(dtype), rng.normal(size=(3, 3))
+    m[2] = [0.1, -0.2, 3.0]
+    exact = np.concatenate([p, np.ones((*shape, 1))], -1).astype(float) @ m.astype(dtype).astype(float).T
+    bound = 16 * np.finfo(dtype).eps * 4  # terms are below 4
+    got = transform_points(p, m, homogeneous=True)
+    assert got.dtype == dtype and got.shape == (*shape, 3) and np.abs(got - exact).max(initial=0) < bound
+    flat = transform_points(p, m)
+    assert flat.shape == p.shape
+    assert np.abs(flat * exact[..., 2:] - exact[..., :2]).max(initial=0) < bound
+    assert np.abs(transform_vectors(p, m) - p.astype(float) @ m[:2, :2].T).max(initial=0) < bound
+
+
+def test_each_point_of_the_plane_has_its_own_matrix():
+    p, offsets = np.random.default_rng(7).normal(size=(20, 2)), np.arange(12.0).reshape(6, 1, 2)
+    assert np.allclose(transform_points(p, translate(offsets)), p + offsets, atol=1e-15)
+    with pytest.raises(ValueError, match=r"matrix: expected shape \(\.\.\., 3, 3\)"):
+        transform_points(p, np.eye(4))
+    with pytest.raises(ValueError, match=r"points: expected shape \(\.\.\., 3\)"):
+        transform_points(np.ones((5, 4)), np.eye(4))

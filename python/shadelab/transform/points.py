@@ -5,7 +5,7 @@ from __future__ import annotations
 from typing import Any
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike, DTypeLike, NDArray
 
 from .. import _arrays
 from .._arrays import Floats
@@ -59,18 +59,18 @@ def transform_points(
 
     Parameters
     ----------
-    points : array_like, shape (..., 3)
+    points : array_like, shape (..., 3), or (..., 2) in the plane
         Their precision governs.
-    matrix : array_like, shape (..., 4, 4)
+    matrix : array_like, shape (..., 4, 4), or (..., 3, 3) in the plane
         One for all, or leading axes that broadcast with those of the points.
     homogeneous : bool
-        Return all four coordinates undivided (clip space, if the matrix projects).
+        Return all coordinates undivided (clip space, if the matrix projects).
     out : ndarray, optional
         Where to write.
 
     Returns
     -------
-    ndarray, shape (..., 3) or (..., 4)
+    ndarray, of the points' shape, or one coordinate more
         Divided by w unless `homogeneous`.
 
     Raises
@@ -89,8 +89,7 @@ def transform_points(
     >>> transform_points([1.0, 0, 0], translate([0, 5, 0]))
     array([1., 5., 0.])
     """
-    kind = "homogeneous" if homogeneous else "point"
-    return _transform("points", points, matrix, kind, 4 if homogeneous else 3, out)
+    return _transform("points", points, matrix, "homogeneous" if homogeneous else "point", out)
 
 
 def transform_vectors(vectors: ArrayLike, matrix: ArrayLike, *, out: NDArray[Any] | None = None) -> Floats:
@@ -98,16 +97,16 @@ def transform_vectors(vectors: ArrayLike, matrix: ArrayLike, *, out: NDArray[Any
 
     Parameters
     ----------
-    vectors : array_like, shape (..., 3)
+    vectors : array_like, shape (..., 3), or (..., 2) in the plane
         Their precision governs.
-    matrix : array_like, shape (..., 4, 4)
+    matrix : array_like, shape (..., 4, 4), or (..., 3, 3) in the plane
         One for all, or leading axes that broadcast with those of the vectors.
     out : ndarray, optional
         Where to write.
 
     Returns
     -------
-    ndarray, shape (..., 3)
+    ndarray, of the vectors' shape
         Lengths are not kept unless the matrix keeps them.
 
     Raises
@@ -121,7 +120,7 @@ def transform_vectors(vectors: ArrayLike, matrix: ArrayLike, *, out: NDArray[Any
     >>> transform_vectors([1.0, 0, 0], translate([0, 5, 0]))
     array([1., 0., 0.])
     """
-    return _transform("vectors", vectors, matrix, "vector", 3, out)
+    return _transform("vectors", vectors, matrix, "vector", out)
 
 
 def transform_normals(normals: ArrayLike, matrix: ArrayLike, *, out: NDArray[Any] | None = None) -> Floats:
@@ -152,25 +151,26 @@ def transform_normals(normals: ArrayLike, matrix: ArrayLike, *, out: NDArray[Any
     >>> transform_normals([0.6, 0.8, 0.0], scale([2.0, 1.0, 1.0])).round(4)
     array([0.3511, 0.9363, 0.    ])
     """
-    return _transform("normals", normals, matrix, "normal", 3, out)
+    return _transform("normals", normals, matrix, "normal", out)
 
 
-def _pair(name: str, given: ArrayLike, matrix: ArrayLike, matrix_dtype: Any) -> tuple[tuple[int, ...], Floats, Floats]:
-    """The batch shape, items (n, 3) and their matrices (1 or n, 4, 4)."""
-    items = _arrays.vectors(name, given, 3)
-    m = _arrays.matrices("matrix", matrix, 4, items.dtype if matrix_dtype is None else matrix_dtype)
+def _pair(
+    name: str, given: ArrayLike, matrix: ArrayLike, n: int, dtype: DTypeLike | None = None
+) -> tuple[tuple[int, ...], Floats, Floats]:
+    """The batch shape, items (count, n) and their matrices (1 or count, n + 1, n + 1)."""
+    items = _arrays.vectors(name, given, n)
+    m = _arrays.matrices("matrix", matrix, n + 1, items.dtype if dtype is None else dtype)
     if m.ndim == 2:
-        return items.shape[:-1], items.reshape(-1, 3), m[None]
+        return items.shape[:-1], items.reshape(-1, n), m[None]
     shape, (flat, many) = _arrays.broadcast({name: (items, 1), "matrix": (m, 2)})
     return shape, flat, many
 
 
-def _transform(
-    name: str, given: ArrayLike, matrix: ArrayLike, kind: str, width: int, out: NDArray[Any] | None
-) -> Floats:
-    shape, flat, m = _pair(name, given, matrix, None)
-    result = _arrays.output("out", out, (*shape, width), flat.dtype)
-    _kernels.transform(kind, flat, m, result)
+def _transform(name: str, given: ArrayLike, matrix: ArrayLike, kind: str, out: NDArray[Any] | None) -> Floats:
+    n = 2 if kind != "normal" and np.shape(given)[-1:] == (2,) else 3
+    shape, flat, m = _pair(name, given, matrix, n)
+    result = _arrays.output("out", out, (*shape, n + (kind == "homogeneous")), flat.dtype)
+    (_kernels.transform if n == 3 else _kernels.transform_2d)(kind, flat, m, result)
     return result
 
 
@@ -209,7 +209,7 @@ def project(points: ArrayLike, matrix: ArrayLike, size: tuple[int, int], *, out:
     >>> project([0.0, 0.0, 4.0], camera, (640, 480))
     array([320., 240.,  -1.])
     """
-    shape, flat, m = _pair("points", points, matrix, None)
+    shape, flat, m = _pair("points", points, matrix, 3)
     result = _arrays.output("out", out, (*shape, 3), flat.dtype)
     _kernels.project(flat, m, picture_size(size), result)
     return result
@@ -252,7 +252,7 @@ def unproject(
     >>> np.round(unproject([320.0, 240.0, -1.0], camera, (640, 480)), 9) + 0.0
     array([0., 0., 4.])
     """
-    shape, flat, m = _pair("pixels", pixels, matrix, np.float64)
+    shape, flat, m = _pair("pixels", pixels, matrix, 3, np.float64)
     result = _arrays.output("out", out, (*shape, 3), flat.dtype)
     _kernels.unproject(flat, m, picture_size(size), result)
     return result

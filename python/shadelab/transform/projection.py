@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import Any, Literal
+from typing import Any, Literal, NamedTuple
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -11,7 +11,7 @@ from .. import _arrays
 from .._arrays import Floats
 from .._kernels import transform as _kernels
 
-__all__ = ["Depth", "linear_depth", "orthographic", "perspective"]
+__all__ = ["Depth", "DepthPrecision", "depth_precision", "linear_depth", "orthographic", "perspective"]
 
 
 Depth = Literal["standard", "zero_to_one", "reversed"]
@@ -190,3 +190,69 @@ def linear_depth(depth: ArrayLike, projection: ArrayLike, *, out: NDArray[Any] |
     result = _arrays.output("out", out, d.shape, d.dtype)
     _kernels.linear_depth(m[2:, 2:].tolist(), [d], [result])
     return result
+
+
+class DepthPrecision(NamedTuple):
+    """What a depth buffer tells apart."""
+
+    step: Floats
+    """The distance to the next stored depth away from the eye; infinite where there is none."""
+    bits: Floats
+    """log2 of one plus distance over step: the bits of the distance that are left, 0 where none is."""
+
+
+def depth_precision(
+    distance: ArrayLike,
+    near: ArrayLike,
+    far: ArrayLike = np.inf,
+    *,
+    depth: Depth = "standard",
+    storage: Literal["float32", "unorm24", "unorm16"] = "float32",
+) -> DepthPrecision:
+    """What a depth buffer tells apart at a distance, under a perspective projection.
+
+    Parameters
+    ----------
+    distance : array_like, shape (...)
+        Along the line of sight, in [near, far].
+    near, far : array_like, shape (...)
+        As in `perspective`; leading axes of all three broadcast.
+    depth : {"standard", "zero_to_one", "reversed"}
+        The convention, as in `perspective`.
+    storage : {"float32", "unorm24", "unorm16"}
+        z/w in single precision, or its range in the convention in 2**24 or 2**16 equal steps.
+
+    Returns
+    -------
+    DepthPrecision
+        `step` and `bits`, of the batch's shape. Distances outside [near, far] give NaN.
+
+    Raises
+    ------
+    TypeError, ValueError
+        If an argument is not real or arguments do not broadcast, if a convention or storage is unknown.
+
+    Notes
+    -----
+    The step is about ``distance**2 / near`` times the step of the stored depth: with equal steps, and with single
+    precision beside one, precision falls with the distance, and hangs on near; it hardly hangs on far. Reversed depth
+    in single precision has steps that shrink with the depth, and keeps 23 to 24 bits of the distance while far is far
+    away. This is what the storage holds; rounding in the projection before it can cost as much again.
+
+    References
+    ----------
+    N. Reed, *Depth Precision Visualized*, 2015.
+
+    Examples
+    --------
+    At a thousand units standard depth in single precision tells 3 units apart, reversed depth a tenth of a thousandth:
+
+    >>> float(depth_precision(1000.0, 0.01).step.round(3))
+    2.989
+    >>> float(depth_precision(1000.0, 0.01, depth="reversed").step.round(6))
+    9.1e-05
+    """
+    _arrays.choice("depth", depth, _DEPTHS)
+    _arrays.choice("storage", storage, ("float32", "unorm24", "unorm16"))
+    given = {"distance": (distance, 0), "near": (near, 0), "far": (far, 0)}
+    return DepthPrecision(*_arrays.elementwise(_kernels.depth_precision, given, [0, 0], depth, storage))

@@ -45,6 +45,29 @@ pub fn transform(
     })
 }
 
+/// `kind`: point, vector, homogeneous.
+#[pyfunction]
+pub fn transform_2d(
+    py: Python<'_>,
+    kind: &str,
+    given: Array<'_, '_>,
+    matrix: Array<'_, '_>,
+    out: Array<'_, '_>,
+) -> PyResult<()> {
+    real!(given, T => {
+        let (given, matrix) = (In::<T>::of("points", given)?, In::<T>::of("matrix", matrix)?);
+        let mut out = Out::<T>::of("out", out)?;
+        let (given, matrix) = (given.items()?, bytemuck::cast_slice(matrix.items::<9>()?));
+        if kind == "homogeneous" {
+            let out = out.items()?;
+            return run(py, None, |watch| points::homogeneous_2d(watch, given, matrix, out));
+        }
+        let kind = if kind == "point" { points::Kind::Point } else { points::Kind::Vector };
+        let out = out.items()?;
+        run(py, None, |watch| points::transform_2d(watch, kind, given, matrix, out))
+    })
+}
+
 #[pyfunction]
 pub fn project(
     py: Python<'_>,

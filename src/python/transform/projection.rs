@@ -1,7 +1,8 @@
-//! Bindings of projection: perspective, orthographic, linear_depth.
+//! Bindings of projection: perspective, orthographic, linear_depth; of depth_precision.
 
 use crate::elementwise;
 use crate::python::array::Arrays;
+use crate::transform::depth_precision::{self as precision, Storage};
 use crate::transform::projection::{self, Depth, Frustum};
 use bytemuck::cast;
 use pyo3::exceptions::PyValueError;
@@ -52,5 +53,26 @@ pub fn linear_depth(
 ) -> PyResult<()> {
     elementwise!(py, given, out, |depth: [T; 1]| -> (distance: [T; 1]) {
         [projection::linear_depth(depth[0], entries.map(|row| row.map(|x| x as T)))]
+    })
+}
+
+#[pyfunction]
+pub fn depth_precision(
+    py: Python<'_>,
+    depth: &str,
+    storage: &str,
+    given: Arrays<'_>,
+    out: Arrays<'_>,
+) -> PyResult<()> {
+    let depth = depth_of(depth)?;
+    let storage = match storage {
+        "float32" => Storage::Float32,
+        "unorm24" => Storage::Unorm((1 << 24) - 1),
+        "unorm16" => Storage::Unorm((1 << 16) - 1),
+        _ => return Err(PyValueError::new_err(format!("storage: unknown format {storage:?}"))),
+    };
+    elementwise!(py, given, out, |distance: [T; 1], near: [T; 1], far: [T; 1]| -> (step: [T; 1], bits: [T; 1]) {
+        let [step, bits] = precision::depth_precision(distance[0], [near[0], far[0]], depth, storage);
+        ([step], [bits])
     })
 }

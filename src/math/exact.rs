@@ -34,6 +34,13 @@ pub fn product_error<V: Lanes>(a: V, b: V) -> V {
     ((ah * bh - a * b) + ah * bl + al * bh) + al * bl
 }
 
+/// `a b - c d`, right to two units of the last place: the rounding errors of the products are carried along.
+/// W. Kahan, *On the Cost of Floating-Point Computation Without Extra-Precise Arithmetic*, 2004.
+#[inline(always)]
+pub fn difference_of_products<V: Lanes>(a: V, b: V, c: V, d: V) -> V {
+    (a * b - c * d) + (product_error(a, b) - product_error(c, d))
+}
+
 /// The upper and the lower half of a significand: products of such halves are exact.
 #[inline(always)]
 fn halves<V: Lanes>(x: V) -> (V, V) {
