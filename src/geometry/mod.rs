@@ -1,12 +1,28 @@
-//! Rays against primitives, and barycentric coordinates. Each test stands alone, works on the user's scalars in
-//! their precision, and says where it is exact.
+//! Rays against primitives, overlap tests, and barycentric coordinates. Each test stands alone, works on the user's
+//! scalars in their precision, and says where it is exact.
 //!
 //! - [`barycentric`]: coordinates of points in triangles
 //! - [`ray_sphere`]: a ray against a sphere: robust, quadratic, geometric
 //! - [`ray_triangle`]: a ray against a triangle: watertight, Möller-Trumbore, plane
+//! - [`three_planes`]: the point where planes meet
+//! - [`plane_aabb`], [`plane_obb`]: the side of a plane on which boxes lie
+//! - [`aabb_aabb`], [`obb_obb`], [`sphere_sphere`], [`sphere_aabb`], [`sphere_triangle`], [`triangle_aabb`],
+//!   [`polygon_aabb`], [`triangle_triangle`]: whether two things have a point in common; all decided exactly ([`predicate`])
 
 pub mod barycentric;
 pub mod ray_sphere;
 pub mod ray_triangle;
 
 pub(crate) use crate::math::exact;
+pub(crate) mod predicate;
+pub mod three_planes;
+pub mod plane_aabb;
+pub mod plane_obb;
+pub mod aabb_aabb;
+pub mod obb_obb;
+pub mod sphere_sphere;
+pub mod sphere_aabb;
+pub mod sphere_triangle;
+pub mod triangle_aabb;
+pub mod polygon_aabb;
+pub mod triangle_triangle;

@@ -1,5 +1,6 @@
 //! Bindings of `geometry`, a file for each of its faces.
 
+mod overlap;
 mod points;
 mod rays;
 
@@ -7,6 +8,40 @@ use pyo3::prelude::*;
 
 #[pymodule]
 pub mod geometry {
+    #[pymodule_export]
+    use super::overlap::aabb_aabb;
+    #[pymodule_export]
+    use super::overlap::aabb_aabb_gaps;
+    #[pymodule_export]
+    use super::overlap::obb_obb;
+    #[pymodule_export]
+    use super::overlap::obb_obb_separation;
+    #[pymodule_export]
+    use super::overlap::plane_aabb;
+    #[pymodule_export]
+    use super::overlap::plane_aabb_interval;
+    #[pymodule_export]
+    use super::overlap::plane_obb;
+    #[pymodule_export]
+    use super::overlap::plane_obb_interval;
+    #[pymodule_export]
+    use super::overlap::polygon_aabb;
+    #[pymodule_export]
+    use super::overlap::sphere_aabb;
+    #[pymodule_export]
+    use super::overlap::sphere_aabb_nearest;
+    #[pymodule_export]
+    use super::overlap::sphere_sphere;
+    #[pymodule_export]
+    use super::overlap::sphere_triangle;
+    #[pymodule_export]
+    use super::overlap::three_planes;
+    #[pymodule_export]
+    use super::overlap::triangle_aabb;
+    #[pymodule_export]
+    use super::overlap::triangle_triangle;
+    #[pymodule_export]
+    use super::overlap::triangle_triangle_segment;
     #[pymodule_export]
     use super::points::barycentric;
     #[pymodule_export]

@@ -1,0 +1,48 @@
+//! On which side of a plane `n · x + d = 0` does an axis-aligned box lie? The corners farthest along and against the
+//! normal decide, exactly: 1 if both are in front (where `n` points), -1 if both are behind, 0 if the plane meets the
+//! box, be it in one point. What is no box or no number counts as met.
+
+use super::predicate::{self, Number, Point};
+use crate::real::Real;
+use std::cmp::Ordering;
+
+#[inline(always)]
+pub fn height<N: Number>(n: Point, d: f64, p: Point) -> N {
+    predicate::dot(&predicate::vector::<N>(n), &predicate::vector(p)).plus(&N::of(d))
+}
+
+/// The sign of `n · p + d`.
+#[inline(always)]
+pub fn side(n: Point, d: f64, p: Point) -> Ordering {
+    predicate::sign(height(n, d, p), || height(n, d, p))
+}
+
+#[inline(always)]
+pub fn plane_aabb<T: Real>(plane: [T; 4], [low, high]: [[T; 3]; 2]) -> i8 {
+    let [a, b, c, d] = plane.map(Real::to_f64);
+    let (n, low, high) = ([a, b, c], predicate::point(low), predicate::point(high));
+    let exists = (0..3).all(|i| low[i] <= high[i]);
+    if !(exists && predicate::finite([a, b, c, d]) && predicate::finite(low) && predicate::finite(high)) {
+        return 0;
+    }
+    let near = std::array::from_fn(|i| if n[i] > 0.0 { low[i] } else { high[i] });
+    if side(n, d, near) == Ordering::Greater {
+        return 1;
+    }
+    let far = std::array::from_fn(|i| if n[i] > 0.0 { high[i] } else { low[i] });
+    -((side(n, d, far) == Ordering::Less) as i8)
+}
+
+/// The signed distance of the box's centre from the plane, and half the extent of the box along the normal.
+#[inline(always)]
+pub fn interval<T: Real>(plane: [T; 4], [low, high]: [[T; 3]; 2]) -> [T; 2] {
+    let [a, b, c, d] = plane.map(Real::to_f64);
+    let (low, high) = (predicate::point(low), predicate::point(high));
+    let (mut centre, mut radius) = (d, 0.0);
+    for (i, n) in [a, b, c].into_iter().enumerate() {
+        centre += n * (0.5 * (low[i] + high[i]));
+        radius += n.abs() * (0.5 * (high[i] - low[i]));
+    }
+    let length = (a * a + b * b + c * c).sqrt();
+    [T::of(centre / length), T::of(radius / length)]
+}
