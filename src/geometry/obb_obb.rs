@@ -7,7 +7,7 @@
 //! S. Gottschalk, M. Lin, D. Manocha, *OBBTree: A Hierarchical Structure for Rapid Interference Detection*, SIGGRAPH 1996.
 
 use super::plane_obb::Obb;
-use super::predicate::{self, Bounded, Number, Point};
+use super::predicate::{self, Bounded, Expansion, Number, Point};
 use std::cmp::Ordering;
 
 /// The edges whose product is the axis of each number: of A (0-2) or of B (3-5).
@@ -44,18 +44,58 @@ fn gap<N: Number>(a: &Obb, b: &Obb, n: &[N; 3]) -> N {
     apart.minus(&a.reach(n)).minus(&b.reach(n))
 }
 
-fn separates(a: &Obb, b: &Obb, k: usize) -> bool {
-    let n = axis::<Bounded>(a, b, k);
-    let exactly = || {
-        let n = axis(a, b, k);
-        gap(a, b, &n)
-    };
-    predicate::sign(gap(a, b, &n), exactly) == Ordering::Greater
+/// Sums of absolute components, which bound products.
+fn size(v: Point) -> f64 {
+    v[0].abs() + v[1].abs() + v[2].abs()
+}
+
+/// What separates two boxes, settled by plain arithmetic where a bound of its rounding allows.
+struct Pair<'a> {
+    a: &'a Obb,
+    b: &'a Obb,
+    /// From centre to centre.
+    apart: Point,
+    /// Bounds all products of a unit axis with what it is tested on.
+    extent: f64,
+}
+
+impl<'a> Pair<'a> {
+    fn new(a: &'a Obb, b: &'a Obb) -> Self {
+        let (c, d) = (a.center, b.center);
+        let apart = [d[0] - c[0], d[1] - c[1], d[2] - c[2]];
+        let part = |o: &Obb, i: usize| o.half[i] * size(o.axes[i]);
+        let reach = |o: &Obb| part(o, 0) + part(o, 1) + part(o, 2);
+        Self { a, b, apart, extent: size(apart) + reach(a) + reach(b) }
+    }
+    fn separates(&self, k: usize) -> bool {
+        let (a, b) = (self.a, self.b);
+        let (u, v) = (edge(a, b, AXES[k][0]), edge(a, b, AXES[k][1]));
+        // Of axes that are one and the same, as boxes of one frame have them.
+        if u == v || (u[0] == -v[0] && u[1] == -v[1] && u[2] == -v[2]) {
+            return false;
+        }
+        let n = [u[1] * v[2] - u[2] * v[1], u[2] * v[0] - u[0] * v[2], u[0] * v[1] - u[1] * v[0]];
+        let dot = |e: Point| (n[0] * e[0] + n[1] * e[1] + n[2] * e[2]).abs();
+        let reach =
+            |o: &Obb| o.half[0] * dot(o.axes[0]) + o.half[1] * dot(o.axes[1]) + o.half[2] * dot(o.axes[2]);
+        let gap = dot(self.apart) - (reach(a) + reach(b));
+        // Fewer than 16 roundings on the way of any term, each of half an epsilon, and one for the bound itself.
+        let error = 9.0 * f64::EPSILON * size(u) * size(v) * self.extent;
+        if gap.abs() > error && error > 1e-290 { gap > 0.0 } else { self.separates_exactly(k) }
+    }
+    #[cold]
+    #[inline(never)]
+    fn separates_exactly(&self, k: usize) -> bool {
+        let n = axis::<Expansion>(self.a, self.b, k);
+        let parallel = n.iter().all(|x| x.sign() == Ordering::Equal);
+        !parallel && gap(self.a, self.b, &n).sign() == Ordering::Greater
+    }
 }
 
 /// Whether two boxes have a point in common; false where one does not exist.
 pub fn obb_obb(a: &Obb, b: &Obb) -> bool {
-    a.exists() && b.exists() && !(0..15).any(|k| separates(a, b, k))
+    let pair = Pair::new(a, b);
+    a.exists() && b.exists() && !(0..15).any(|k| pair.separates(k))
 }
 
 /// The axis of the widest gap.
@@ -74,19 +114,19 @@ pub fn separation(a: &Obb, b: &Obb) -> Separation {
     if !(a.exists() && b.exists()) {
         return Separation { overlap: false, axis: -1, gap: f64::NAN, direction: [f64::NAN; 3] };
     }
-    let size = |v: Point| (v[0] * v[0] + v[1] * v[1] + v[2] * v[2]).sqrt();
+    let pair = Pair::new(a, b);
     let mut widest = (-1, f64::NEG_INFINITY, [0.0; 3]);
     let mut overlap = true;
     for k in 0..15 {
         let n = axis::<Bounded>(a, b, k);
-        let apart = separates(a, b, k);
+        let apart = pair.separates(k);
         // Directions of near-parallel edges come out of the exact product; parallel ones have none.
         let direction = if n.iter().any(|x| x.error > 1e-10 * x.value.abs()) {
-            axis::<predicate::Expansion>(a, b, k).map(|x| x.value())
+            axis::<Expansion>(a, b, k).map(|x| x.value())
         } else {
             n.map(|x| x.value)
         };
-        let length = size(direction);
+        let length = direction.iter().map(|x| x * x).sum::<f64>().sqrt();
         if length == 0.0 {
             continue;
         }

@@ -17,26 +17,27 @@ pub fn side(n: Point, d: f64, p: Point) -> Ordering {
     predicate::sign(height(n, d, p), || height(n, d, p))
 }
 
-#[inline(always)]
+#[inline(never)]
 pub fn plane_aabb<T: Real>(plane: [T; 4], [low, high]: [[T; 3]; 2]) -> i8 {
-    let [a, b, c, d] = plane.map(Real::to_f64);
+    let [a, b, c, d] = predicate::four(plane);
     let (n, low, high) = ([a, b, c], predicate::point(low), predicate::point(high));
     let exists = (0..3).all(|i| low[i] <= high[i]);
     if !(exists && predicate::finite([a, b, c, d]) && predicate::finite(low) && predicate::finite(high)) {
         return 0;
     }
-    let near = std::array::from_fn(|i| if n[i] > 0.0 { low[i] } else { high[i] });
+    let pick = |i: usize, a: &Point, b: &Point| if n[i] > 0.0 { a[i] } else { b[i] };
+    let near = [pick(0, &low, &high), pick(1, &low, &high), pick(2, &low, &high)];
     if side(n, d, near) == Ordering::Greater {
         return 1;
     }
-    let far = std::array::from_fn(|i| if n[i] > 0.0 { high[i] } else { low[i] });
+    let far = [pick(0, &high, &low), pick(1, &high, &low), pick(2, &high, &low)];
     -((side(n, d, far) == Ordering::Less) as i8)
 }
 
 /// The signed distance of the box's centre from the plane, and half the extent of the box along the normal.
-#[inline(always)]
+#[inline(never)]
 pub fn interval<T: Real>(plane: [T; 4], [low, high]: [[T; 3]; 2]) -> [T; 2] {
-    let [a, b, c, d] = plane.map(Real::to_f64);
+    let [a, b, c, d] = predicate::four(plane);
     let (low, high) = (predicate::point(low), predicate::point(high));
     let (mut centre, mut radius) = (d, 0.0);
     for (i, n) in [a, b, c].into_iter().enumerate() {

@@ -18,15 +18,15 @@ impl Obb {
     /// Axes come as the rows of a matrix.
     #[inline(always)]
     pub fn new<T: Real>(center: [T; 3], axes: [T; 9], half: [T; 3]) -> Self {
-        let axes = axes.map(Real::to_f64);
-        let axes = std::array::from_fn(|i| [axes[3 * i], axes[3 * i + 1], axes[3 * i + 2]]);
+        let row = |i: usize| predicate::point([axes[3 * i], axes[3 * i + 1], axes[3 * i + 2]]);
+        let axes = [row(0), row(1), row(2)];
         Self { center: predicate::point(center), axes, half: predicate::point(half) }
     }
     /// All finite, no half extent negative.
     #[inline(always)]
     pub fn exists(&self) -> bool {
         predicate::finite(self.center)
-            && self.axes.into_iter().all(predicate::finite)
+            && self.axes.iter().all(|&a| predicate::finite(a))
             && predicate::finite(self.half)
             && self.half.iter().all(|&h| h >= 0.0)
     }
@@ -49,9 +49,9 @@ fn below<N: Number>(n: Point, d: f64, b: &Obb) -> N {
     super::plane_aabb::height::<N>(n, d, b.center).plus(&b.reach(&predicate::vector(n)))
 }
 
-#[inline(always)]
+#[inline(never)]
 pub fn plane_obb<T: Real>(plane: [T; 4], center: [T; 3], axes: [T; 9], half: [T; 3]) -> i8 {
-    let [x, y, z, d] = plane.map(Real::to_f64);
+    let [x, y, z, d] = predicate::four(plane);
     let (n, b) = ([x, y, z], Obb::new(center, axes, half));
     if !(predicate::finite([x, y, z, d]) && b.exists()) {
         return 0;
@@ -63,9 +63,9 @@ pub fn plane_obb<T: Real>(plane: [T; 4], center: [T; 3], axes: [T; 9], half: [T;
 }
 
 /// The signed distance of the box's centre from the plane, and half the extent of the box along the normal.
-#[inline(always)]
+#[inline(never)]
 pub fn interval<T: Real>(plane: [T; 4], center: [T; 3], axes: [T; 9], half: [T; 3]) -> [T; 2] {
-    let [x, y, z, d] = plane.map(Real::to_f64);
+    let [x, y, z, d] = predicate::four(plane);
     let (n, b) = ([x, y, z], Obb::new(center, axes, half));
     let length = (x * x + y * y + z * z).sqrt();
     let centre = super::plane_aabb::height::<predicate::Bounded>(n, d, b.center).value;

@@ -2,12 +2,14 @@
 //!
 //! A formula is written once over [`Number`]. [`Bounded`] evaluates it in double precision and bounds its own rounding;
 //! only where the bound does not settle the sign, [`Expansion`] evaluates it anew without rounding. Single precision
-//! converts exactly. Values and their products must neither overflow nor underflow in double precision: formulas of
+//! converts exactly. Kernels that decide so are scalar and double, which no SIMD level betters: they are called from the
+//! dispatch, not inlined into it, where their closures would stay calls. Values and their products must neither overflow nor underflow in double precision: formulas of
 //! degree six hold for magnitudes from 1e-50 to 1e50, and so for all of single precision.
 //!
 //! J. R. Shewchuk, *Adaptive Precision Floating-Point Arithmetic and Fast Robust Geometric Predicates*, Discrete &
 //! Computational Geometry 18, 1997. Orientations go through the crate `robust`.
 
+use crate::math::exact::{two_product, two_sum};
 use crate::real::Real;
 use robust::{Coord, Coord3D};
 use std::cmp::Ordering;
@@ -82,31 +84,9 @@ impl Number for Bounded {
 pub struct Expansion(Vec<f64>);
 
 #[inline(always)]
-fn two_sum(a: f64, b: f64) -> (f64, f64) {
-    let sum = a + b;
-    let virtual_b = sum - a;
-    (sum, (a - (sum - virtual_b)) + (b - virtual_b))
-}
-
-#[inline(always)]
 fn fast_two_sum(a: f64, b: f64) -> (f64, f64) {
     let sum = a + b;
     (sum, b - (sum - a))
-}
-
-#[inline(always)]
-fn halves(x: f64) -> (f64, f64) {
-    // 2^27 + 1.
-    let c = 134217729.0 * x;
-    let high = c - (c - x);
-    (high, x - high)
-}
-
-#[inline(always)]
-fn two_product(a: f64, b: f64) -> (f64, f64) {
-    let product = a * b;
-    let ((ah, al), (bh, bl)) = (halves(a), halves(b));
-    (product, al * bl - (((product - ah * bh) - al * bh) - ah * bl))
 }
 
 impl Expansion {
@@ -191,26 +171,36 @@ impl Number for Expansion {
 /// The exact sign of one formula, given in both numbers: `sign(f(x), || f(x))`.
 #[inline(always)]
 pub fn sign(quick: Bounded, exact: impl FnOnce() -> Expansion) -> Ordering {
-    quick.sign().unwrap_or_else(|| exact().sign())
+    match quick.sign() {
+        Some(sign) => sign,
+        None => settle(exact).sign(),
+    }
 }
 
-/// The value of one formula to 3e-14 of itself, given in both numbers.
+#[cold]
+#[inline(never)]
+fn settle(exact: impl FnOnce() -> Expansion) -> Expansion {
+    exact()
+}
+
+/// The value of one formula to 5e-14 of itself, given in both numbers.
 #[inline(always)]
 pub fn value(quick: Bounded, exact: impl FnOnce() -> Expansion) -> f64 {
-    if quick.error <= 2e-14 * quick.value.abs() { quick.value } else { exact().value() }
+    if quick.error <= 4e-14 * quick.value.abs() { quick.value } else { settle(exact).value() }
 }
 
 // ---- Vectors of numbers ----
 
 #[inline(always)]
 pub fn vector<N: Number>(v: Point) -> [N; 3] {
-    v.map(N::of)
+    [N::of(v[0]), N::of(v[1]), N::of(v[2])]
 }
 
 /// `b - a`.
 #[inline(always)]
 pub fn between<N: Number>(a: Point, b: Point) -> [N; 3] {
-    std::array::from_fn(|i| N::of(b[i]).minus(&N::of(a[i])))
+    let part = |i: usize| N::of(b[i]).minus(&N::of(a[i]));
+    [part(0), part(1), part(2)]
 }
 
 #[inline(always)]
@@ -227,13 +217,24 @@ pub fn cross<N: Number>(a: &[N; 3], b: &[N; 3]) -> [N; 3] {
 /// In double precision, which holds every single exactly.
 #[inline(always)]
 pub fn point<T: Real>(p: [T; 3]) -> Point {
-    p.map(Real::to_f64)
+    [p[0].to_f64(), p[1].to_f64(), p[2].to_f64()]
+}
+
+/// The same of a plane.
+#[inline(always)]
+pub fn four<T: Real>(p: [T; 4]) -> [f64; 4] {
+    [p[0].to_f64(), p[1].to_f64(), p[2].to_f64(), p[3].to_f64()]
 }
 
 /// Neither NaN nor infinite.
 #[inline(always)]
 pub fn finite<const N: usize>(v: [f64; N]) -> bool {
-    v.iter().all(|x| x.is_finite())
+    // What is not finite times zero is NaN, and NaN stays in a sum.
+    let mut sum = 0.0;
+    for x in v {
+        sum += x * 0.0;
+    }
+    sum == 0.0
 }
 
 /// Positive where `a`, `b`, `c` turn counter-clockwise in the plane of the axes `i` and `j`; exact in sign.

@@ -28,7 +28,7 @@ fn excess<N: Number>(c: Point, p: Point, r: f64) -> N {
     predicate::dot(&d, &d).minus(&N::of(r).times(&N::of(r)))
 }
 
-#[inline(always)]
+#[inline(never)]
 pub fn sphere_aabb<T: Real>(c: [T; 3], r: T, [low, high]: [[T; 3]; 2]) -> bool {
     let exists = low[0] <= high[0] && low[1] <= high[1] && low[2] <= high[2];
     let (p, c, r) = (predicate::point(nearest(c, [low, high])), predicate::point(c), r.to_f64());

@@ -12,7 +12,7 @@ fn excess<N: Number>(a: Point, ra: f64, b: Point, rb: f64) -> N {
     predicate::dot(&d, &d).minus(&reach.times(&reach))
 }
 
-#[inline(always)]
+#[inline(never)]
 pub fn sphere_sphere<T: Real>(a: [T; 3], ra: T, b: [T; 3], rb: T) -> bool {
     let (a, ra, b, rb) = (predicate::point(a), ra.to_f64(), predicate::point(b), rb.to_f64());
     if !(predicate::finite(a) && predicate::finite(b) && ra >= 0.0 && rb >= 0.0) {

@@ -8,8 +8,11 @@ use super::predicate::{self, Bounded, Expansion, Number, Point};
 use crate::real::Real;
 
 fn determinant<N: Number>(rows: [Point; 3]) -> N {
-    let [a, b, c] = rows.map(predicate::vector::<N>);
-    predicate::dot(&a, &predicate::cross(&b, &c))
+    let [a, b, c] = rows;
+    predicate::dot(
+        &predicate::vector::<N>(a),
+        &predicate::cross(&predicate::vector(b), &predicate::vector(c)),
+    )
 }
 
 /// Shewchuk's bounds do not cover what underflows; determinants of unit-sized rows do not.
@@ -26,24 +29,27 @@ fn scaled(planes: [[f64; 4]; 3]) -> Option<[[f64; 4]; 3]> {
             return None;
         }
         let scale = f64::from_bits((2046 << 52) - (largest.to_bits() & (0x7ff << 52)));
-        *p = p.map(|x| x * scale);
+        for x in p {
+            *x *= scale;
+        }
     }
     Some(out)
 }
 
 /// The point, and the determinant of the unit normals: the volume they span, 1 where they are orthogonal, 0 where no
 /// point or no single one exists (the point is NaN then).
-#[inline(always)]
+#[inline(never)]
 pub fn three_planes<T: Real>(planes: [[T; 4]; 3]) -> ([T; 3], T) {
-    let (p, volume) = solve(planes.map(|p| p.map(Real::to_f64)));
-    (p.map(T::of), T::of(volume))
+    let (p, volume) =
+        solve([predicate::four(planes[0]), predicate::four(planes[1]), predicate::four(planes[2])]);
+    ([T::of(p[0]), T::of(p[1]), T::of(p[2])], T::of(volume))
 }
 
 fn solve(planes: [[f64; 4]; 3]) -> (Point, f64) {
     let Some(planes) = scaled(planes) else { return ([f64::NAN; 3], f64::NAN) };
     let rows: [Point; 3] = std::array::from_fn(|i| [planes[i][0], planes[i][1], planes[i][2]]);
     let whole = exactly(rows);
-    let lengths = rows.map(|n| (n[0] * n[0] + n[1] * n[1] + n[2] * n[2]).sqrt());
+    let length = |n: Point| (n[0] * n[0] + n[1] * n[1] + n[2] * n[2]).sqrt();
     if whole == 0.0 {
         return ([f64::NAN; 3], 0.0);
     }
@@ -55,5 +61,5 @@ fn solve(planes: [[f64; 4]; 3]) -> (Point, f64) {
         });
         exactly(replaced) / whole
     });
-    (point, whole / (lengths[0] * lengths[1] * lengths[2]))
+    (point, whole / (length(rows[0]) * length(rows[1]) * length(rows[2])))
 }

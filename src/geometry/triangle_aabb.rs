@@ -19,7 +19,7 @@ pub fn separating_axis(t: [Point; 3], [low, high]: [Point; 2]) -> i32 {
         return -2;
     }
     for k in 0..3 {
-        let [a, b, c] = t.map(|p| p[k]);
+        let (a, b, c) = (t[0][k], t[1][k], t[2][k]);
         if a.min(b).min(c) > high[k] || a.max(b).max(c) < low[k] {
             return k as i32;
         }

@@ -14,13 +14,19 @@ type Triangle = [Point; 3];
 const PLANES: [[usize; 2]; 3] = [[1, 2], [2, 0], [0, 1]];
 
 fn boxes_touch(a: &[Point], b: &[Point]) -> bool {
-    (0..3).all(|k| {
-        let range = |p: &[Point]| {
-            p.iter().fold((f64::INFINITY, f64::NEG_INFINITY), |(l, h), p| (l.min(p[k]), h.max(p[k])))
-        };
-        let ((al, ah), (bl, bh)) = (range(a), range(b));
-        al <= bh && bl <= ah
-    })
+    for k in 0..3 {
+        let (mut al, mut ah, mut bl, mut bh) = (a[0][k], a[0][k], b[0][k], b[0][k]);
+        for p in &a[1..] {
+            (al, ah) = (al.min(p[k]), ah.max(p[k]));
+        }
+        for p in &b[1..] {
+            (bl, bh) = (bl.min(p[k]), bh.max(p[k]));
+        }
+        if al > bh || bl > ah {
+            return false;
+        }
+    }
+    true
 }
 
 /// A coordinate plane onto which three points do not fall in one line; None if they are in one.
@@ -30,7 +36,8 @@ fn shadow([a, b, c]: Triangle) -> Option<[usize; 2]> {
 
 /// No two of opposite sign.
 fn one_side(s: [f64; 3]) -> bool {
-    !(s.iter().any(|&x| x > 0.0) && s.iter().any(|&x| x < 0.0))
+    let [a, b, c] = s;
+    !((a > 0.0 || b > 0.0 || c > 0.0) && (a < 0.0 || b < 0.0 || c < 0.0))
 }
 
 /// Whether a segment meets a triangle with area in whose plane it lies, both seen in a coordinate plane.
@@ -110,16 +117,21 @@ pub struct Meeting {
 /// `wanted`: whether the segment is asked for.
 pub fn triangle_triangle(a: Triangle, b: Triangle, wanted: bool) -> Meeting {
     let nothing = [[f64::NAN; 3]; 2];
-    let proper = a.into_iter().chain(b).all(predicate::finite);
+    let proper = a.iter().all(|&p| predicate::finite(p)) && b.iter().all(|&p| predicate::finite(p));
     let mut out = Meeting { overlap: false, coplanar: false, segment: nothing };
     if !proper || (!boxes_touch(&a, &b) && !wanted) {
         return out;
     }
-    let sides = |t: Triangle, of: Triangle| of.map(|p| predicate::side(t[0], t[1], t[2], p));
-    let (sa, sb) = (sides(b, a), sides(a, b));
+    let side = |t: Triangle, p: Point| predicate::side(t[0], t[1], t[2], p);
+    let sides = |t: Triangle, of: Triangle| [side(t, of[0]), side(t, of[1]), side(t, of[2])];
+    let apart = |[x, y, z]: [f64; 3]| (x > 0.0 && y > 0.0 && z > 0.0) || (x < 0.0 && y < 0.0 && z < 0.0);
+    let sa = sides(b, a);
+    if apart(sa) {
+        return out;
+    }
+    let sb = sides(a, b);
     out.coplanar = sa == [0.0; 3] || sb == [0.0; 3];
-    let apart = |s: [f64; 3]| s.iter().all(|&x| x > 0.0) || s.iter().all(|&x| x < 0.0);
-    if apart(sa) || apart(sb) || !boxes_touch(&a, &b) {
+    if apart(sb) || !boxes_touch(&a, &b) {
         return out;
     }
     let shadows = [shadow(a), shadow(b)];

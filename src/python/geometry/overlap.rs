@@ -114,7 +114,7 @@ pub fn sphere_aabb_nearest(py: Python<'_>, given: Arrays<'_>, out: Arrays<'_>) -
 pub fn sphere_triangle(py: Python<'_>, given: Arrays<'_>, out: Arrays<'_>) -> PyResult<()> {
     elementwise!(py, given, out,
         |center: [T; 3], r: [T; 1], a: [T; 3], b: [T; 3], c: [T; 3]| -> (overlap: [bool; 1]) {
-        [kernels::sphere_triangle::sphere_triangle(point(center), r[0].to_f64(), [a, b, c].map(point))]
+        [kernels::sphere_triangle::sphere_triangle(point(center), r[0].to_f64(), [point(a), point(b), point(c)])]
     })
 }
 
@@ -123,7 +123,7 @@ pub fn sphere_triangle(py: Python<'_>, given: Arrays<'_>, out: Arrays<'_>) -> Py
 pub fn triangle_aabb(py: Python<'_>, given: Arrays<'_>, out: Arrays<'_>) -> PyResult<()> {
     elementwise!(py, given, out,
         |a: [T; 3], b: [T; 3], c: [T; 3], low: [T; 3], high: [T; 3]| -> (axis: [i32; 1]) {
-        [kernels::triangle_aabb::separating_axis([a, b, c].map(point), [low, high].map(point))]
+        [kernels::triangle_aabb::separating_axis([point(a), point(b), point(c)], [point(low), point(high)])]
     })
 }
 
@@ -131,7 +131,7 @@ pub fn triangle_aabb(py: Python<'_>, given: Arrays<'_>, out: Arrays<'_>) -> PyRe
 pub fn triangle_triangle(py: Python<'_>, given: Arrays<'_>, out: Arrays<'_>) -> PyResult<()> {
     elementwise!(py, given, out,
         |a0: [T; 3], a1: [T; 3], a2: [T; 3], b0: [T; 3], b1: [T; 3], b2: [T; 3]| -> (overlap: [bool; 1]) {
-        let (a, b) = ([a0, a1, a2].map(point), [b0, b1, b2].map(point));
+        let (a, b) = ([point(a0), point(a1), point(a2)], [point(b0), point(b1), point(b2)]);
         [kernels::triangle_triangle::triangle_triangle(a, b, false).overlap]
     })
 }
@@ -141,7 +141,7 @@ pub fn triangle_triangle_segment(py: Python<'_>, given: Arrays<'_>, out: Arrays<
     elementwise!(py, given, out,
         |a0: [T; 3], a1: [T; 3], a2: [T; 3], b0: [T; 3], b1: [T; 3], b2: [T; 3]|
         -> (overlap: [bool; 1], coplanar: [bool; 1], start: [T; 3], end: [T; 3]) {
-        let (a, b) = ([a0, a1, a2].map(point), [b0, b1, b2].map(point));
+        let (a, b) = ([point(a0), point(a1), point(a2)], [point(b0), point(b1), point(b2)]);
         let m = kernels::triangle_triangle::triangle_triangle(a, b, true);
         ([m.overlap], [m.coplanar], of(m.segment[0]), of(m.segment[1]))
     })
@@ -170,7 +170,7 @@ pub fn polygon_aabb(
                 let i = start + k;
                 polygon.clear();
                 polygon.extend(polygons[corners * i..corners * (i + 1)].iter().map(|&p| point(p)));
-                let meeting: Meeting = kernels::polygon_aabb::polygon_aabb(&polygon, [low[i], high[i]].map(point));
+                let meeting: Meeting = kernels::polygon_aabb::polygon_aabb(&polygon, [point(low[i]), point(high[i])]);
                 *out = meeting as i8;
             }
         }))
