@@ -8,6 +8,7 @@
 
 mod block;
 mod bounds;
+mod nearest;
 mod ray;
 pub(crate) mod structure;
 

@@ -10,6 +10,7 @@ from .. import _arrays
 from .._kernels import accel as _kernels
 from ._rays import Progress
 from ._structure import Structure
+from .points import PointQueries
 
 __all__ = ["BVH"]
 
@@ -17,7 +18,7 @@ __all__ = ["BVH"]
 Method = Literal["sah", "median", "lbvh"]
 
 
-class BVH(Structure):
+class BVH(PointQueries, Structure):
     """A bounding volume hierarchy over triangles: nodes of eight boxes, leaves of blocks of four triangles.
 
     Parameters

@@ -2,6 +2,8 @@
 
 mod boxes;
 mod build;
+#[cfg_attr(not(feature = "python"), allow(dead_code))] // arrays of points come from Python alone
+pub(crate) mod closest;
 mod collapse;
 mod cut;
 mod lbvh;

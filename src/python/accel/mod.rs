@@ -1,6 +1,7 @@
 //! Bindings of `accel`: bvh, brute_force, offset_ray.
 
 mod morton;
+mod points;
 mod rays;
 mod tree;
 
@@ -14,6 +15,7 @@ pub mod accel {
     use super::Tree;
     #[pymodule_export]
     use super::morton::{morton_decode, morton_encode, radix_tree};
+    use super::points::closest_point;
     use super::rays::{HitArrays, RayArrays};
     use super::tree::{self, Held, Other, queries};
     use crate::accel as kernels;

@@ -239,3 +239,6 @@ def _offset(dtype: np.dtype[Any]) -> Measurement:
         met += int((accel.BVH(p, f).closest_hit(o, d).face == face).sum())
         cases += 5000
     return Measurement(float(met), cases)
+
+
+from . import accel_queries  # noqa: E402, F401  (registers)
