@@ -2,6 +2,9 @@
 //! scalars in their precision, and says where it is exact.
 //!
 //! - [`barycentric`]: coordinates of points in triangles
+//! - [`closest_point_triangle`]: the nearest point of a triangle
+//! - [`line_line`], [`segment_segment`]: where two lines, or segments, come nearest
+//! - [`ray_plane`], [`ray_aabb`], [`ray_obb`]: a ray against a plane, an axis-aligned and an oriented box
 //! - [`ray_sphere`]: a ray against a sphere: robust, quadratic, geometric
 //! - [`ray_triangle`]: a ray against a triangle: watertight, Möller-Trumbore, plane
 //! - [`three_planes`]: the point where planes meet
@@ -10,6 +13,11 @@
 //!   [`polygon_aabb`], [`triangle_triangle`]: whether two things have a point in common; all decided exactly ([`predicate`])
 
 pub mod barycentric;
+pub mod closest_point_triangle;
+pub mod line_line;
+pub mod ray_aabb;
+pub mod ray_obb;
+pub mod ray_plane;
 pub mod ray_sphere;
 pub mod ray_triangle;
 
@@ -26,3 +34,4 @@ pub mod sphere_triangle;
 pub mod triangle_aabb;
 pub mod polygon_aabb;
 pub mod triangle_triangle;
+pub mod segment_segment;

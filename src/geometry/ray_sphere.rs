@@ -11,7 +11,7 @@
 //!
 //! All work at the size of one: the direction, and the offset with the radius, are scaled by powers of two.
 
-use super::exact::{all_finite, exponent, largest, scaled, two_difference, two_product, two_sum};
+use crate::math::exact::{all_finite, exponent, largest, scaled, two_difference, two_product, two_sum};
 use crate::real::{Lanes, Real};
 use crate::vec::Vec3;
 

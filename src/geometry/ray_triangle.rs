@@ -13,7 +13,7 @@
 //! Triangles without area are missed, unless a ray passes within round-off of them. Nothing is fused: a fused edge
 //! function would break the antisymmetry.
 
-use super::exact::product_error;
+use crate::math::exact::product_error;
 use crate::real::{Lanes, Real};
 use crate::vec::Vec3;
 

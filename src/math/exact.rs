@@ -51,6 +51,55 @@ fn halves<V: Lanes>(x: V) -> (V, V) {
     (high, x - high)
 }
 
+/// The cross product, each component by [`difference_of_products`].
+#[inline(always)]
+pub fn cross<V: Lanes>(a: Vec3<V>, b: Vec3<V>) -> Vec3<V> {
+    Vec3 {
+        x: difference_of_products(a.y, b.z, a.z, b.y),
+        y: difference_of_products(a.z, b.x, a.x, b.z),
+        z: difference_of_products(a.x, b.y, a.y, b.x),
+    }
+}
+
+/// The sum, right to two units of the last place, whatever cancels; its sign is exact. The errors of all additions
+/// are summed along; where the result is so small that theirs could matter, the terms are distilled.
+/// T. Ogita, S. M. Rump, S. Oishi, *Accurate Sum and Dot Product*, SIAM Journal on Scientific Computing 26, 2005.
+#[inline(always)]
+pub fn total<T: Real, const N: usize>(terms: [T; N]) -> T {
+    let (mut sum, mut lost, mut size) = (terms[0], T::zero(), terms[0].abs());
+    for &x in &terms[1..] {
+        let (s, low) = two_sum(sum, x);
+        (sum, lost, size) = (s, lost + low, size + x.abs());
+    }
+    let result = sum + lost;
+    if result.abs() > size * T::EPSILON * T::of(N as f64) || !size.is_finite() {
+        return result;
+    }
+    distilled(terms)
+}
+
+/// Adds neighbours without error until no two overlap: then the last exceeds all others together.
+#[inline(never)]
+fn distilled<T: Real, const N: usize>(mut terms: [T; N]) -> T {
+    for _ in 0..4 * N {
+        let before = terms;
+        for i in 1..N {
+            (terms[i], terms[i - 1]) = two_sum(terms[i], terms[i - 1]);
+        }
+        if terms == before {
+            break;
+        }
+    }
+    terms[N - 1]
+}
+
+/// The scalar product by [`total`].
+#[inline(always)]
+pub fn dot<T: Real>(a: Vec3<T>, b: Vec3<T>) -> T {
+    let [x, y, z] = a.zip(b, |p, q| two_product(p, q)).to_array();
+    total([x.0, y.0, z.0, x.1, y.1, z.1])
+}
+
 /// The largest magnitude among the components.
 #[inline(always)]
 pub fn largest<T: Real>(v: Vec3<T>) -> T {

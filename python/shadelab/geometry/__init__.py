@@ -1,11 +1,15 @@
-"""Rays against primitives, overlap tests, and barycentric coordinates."""
+"""Rays, lines and points against primitives; overlap tests."""
 
-from . import overlap, points, rays
+from . import lines, overlap, points, ray_boxes, rays
+from .lines import *  # noqa: F403
 from .overlap import *  # noqa: F403
 from .points import *  # noqa: F403
+from .ray_boxes import *  # noqa: F403
 from .rays import *  # noqa: F403
 
 __all__: list[str] = []
 __all__ += overlap.__all__
+__all__ += lines.__all__
 __all__ += points.__all__
+__all__ += ray_boxes.__all__
 __all__ += rays.__all__

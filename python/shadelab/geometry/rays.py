@@ -11,7 +11,7 @@ from .. import _arrays
 from .._arrays import Floats
 from .._kernels import geometry as _kernels
 
-__all__ = ["RayHit", "SphereDetails", "SphereHit", "ray_sphere", "ray_triangle"]
+__all__ = ["PlaneDetails", "RayHit", "SphereDetails", "SphereHit", "ray_plane", "ray_sphere", "ray_triangle"]
 
 
 class RayHit(NamedTuple):
@@ -219,3 +219,92 @@ def ray_sphere(
     out = [0] * (6 if full_output else 3)
     found = _arrays.elementwise(_kernels.ray_sphere, given, out, method, bool(full_output), knobs=knobs)
     return SphereDetails(*found) if full_output else SphereHit(*found)
+
+
+class PlaneDetails(NamedTuple):
+    """Where rays meet planes, and how."""
+
+    t: Floats
+    """Where the ray meets the plane within its interval; infinite if it does not."""
+    t_line: Floats
+    """Where the whole line does; infinite if it is parallel."""
+    distance: Floats
+    """The origin's distance from the plane, positive on the side that the normal points to."""
+    cosine: Floats
+    """The cosine between ray and normal: 0 parallel to the plane, negative towards its front."""
+
+
+@overload
+def ray_plane(
+    origins: ArrayLike,
+    directions: ArrayLike,
+    planes: ArrayLike,
+    *,
+    t_min: ArrayLike = ...,
+    t_max: ArrayLike = ...,
+    full_output: Literal[False] = ...,
+) -> Floats: ...
+@overload
+def ray_plane(
+    origins: ArrayLike,
+    directions: ArrayLike,
+    planes: ArrayLike,
+    *,
+    t_min: ArrayLike = ...,
+    t_max: ArrayLike = ...,
+    full_output: Literal[True],
+) -> PlaneDetails: ...
+def ray_plane(
+    origins: ArrayLike,
+    directions: ArrayLike,
+    planes: ArrayLike,
+    *,
+    t_min: ArrayLike = 0.0,
+    t_max: ArrayLike = np.inf,
+    full_output: bool = False,
+) -> Floats | PlaneDetails:
+    """Intersect rays with planes, from either side.
+
+    Parameters
+    ----------
+    origins, directions : array_like, shape (..., 3)
+        Rays. Directions need not be of unit length.
+    planes : array_like, shape (..., 4)
+        Planes `n · x + d = 0` as `(n, d)`; normals need not be of unit length. Leading axes broadcast. The plane
+        through a point `p` has `d = -n · p`.
+    t_min, t_max : float or array_like, shape (...)
+        Hits lie in the open interval, in units of the direction's length.
+    full_output : bool
+        Give `PlaneDetails`.
+
+    Returns
+    -------
+    ndarray, shape (...), or PlaneDetails
+        `t`, infinite where the ray misses: points away, is parallel, or lies in the plane.
+
+    Raises
+    ------
+    TypeError, ValueError
+        If an argument is not real, not of its shape, or does not broadcast; a scalar interval holds NaN.
+
+    Notes
+    -----
+    Computed in the promoted precision of rays and planes. `t` is right to 4 machine epsilons of itself for the plane as
+    given, however far from the origin, and however flat the ray: sums are carried on with the errors of their rounding.
+    Rays are parallel only if they are exactly. `d = -n · p` is itself rounded, by some eps of `|n| |p|`: far from the
+    origin that moves the plane. NaN or infinity, a normal or a direction of no length give NaN at that element.
+
+    References
+    ----------
+    T. Ogita, S. M. Rump, S. Oishi, *Accurate Sum and Dot Product*, SIAM Journal on Scientific Computing 26, 2005.
+
+    Examples
+    --------
+    >>> float(ray_plane([0, 3, 0], [0, -2.0, 0], [0, 1, 0, -1]))
+    1.0
+    """
+    given = {"origins": (origins, 3), "directions": (directions, 3), "planes": (planes, 4)}
+    knobs = {"t_min": t_min, "t_max": t_max}
+    out = [0] * (4 if full_output else 1)
+    found = _arrays.elementwise(_kernels.ray_plane, given, out, bool(full_output), knobs=knobs)
+    return PlaneDetails(*found) if full_output else found[0]

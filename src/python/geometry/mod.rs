@@ -1,13 +1,19 @@
 //! Bindings of `geometry`, a file for each of its faces.
 
 mod overlap;
+mod lines;
 mod points;
+mod ray_boxes;
 mod rays;
 
 use pyo3::prelude::*;
 
 #[pymodule]
 pub mod geometry {
+    #[pymodule_export]
+    use super::lines::line_line;
+    #[pymodule_export]
+    use super::lines::segment_segment;
     #[pymodule_export]
     use super::overlap::aabb_aabb;
     #[pymodule_export]
@@ -44,6 +50,14 @@ pub mod geometry {
     use super::overlap::triangle_triangle_segment;
     #[pymodule_export]
     use super::points::barycentric;
+    #[pymodule_export]
+    use super::points::closest_point_triangle;
+    #[pymodule_export]
+    use super::ray_boxes::ray_aabb;
+    #[pymodule_export]
+    use super::ray_boxes::ray_obb;
+    #[pymodule_export]
+    use super::rays::ray_plane;
     #[pymodule_export]
     use super::rays::ray_sphere;
     #[pymodule_export]

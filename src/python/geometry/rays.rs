@@ -1,9 +1,29 @@
-//! Bindings of rays: ray_sphere, ray_triangle.
+//! Bindings of rays: ray_plane, ray_sphere, ray_triangle.
 
 use crate::elementwise;
 use crate::geometry as kernels;
 use crate::python::array::{Arrays, unknown};
 use pyo3::prelude::*;
+
+/// With `full` three more results: the line's parameter, the origin's distance, the cosine.
+#[pyfunction]
+pub fn ray_plane(py: Python<'_>, full: bool, given: Arrays<'_>, out: Arrays<'_>) -> PyResult<()> {
+    use kernels::ray_plane::ray_plane;
+    if !full {
+        return elementwise!(py, given, out,
+            |o: [T; 3], d: [T; 3], plane: [T; 4], low: [T; 1], high: [T; 1]| -> (t: [T; 1]) {
+                [ray_plane(o.into(), d.into(), plane, low[0], high[0]).t]
+            }
+        );
+    }
+    elementwise!(py, given, out,
+        |o: [T; 3], d: [T; 3], plane: [T; 4], low: [T; 1], high: [T; 1]|
+        -> (t: [T; 1], line: [T; 1], distance: [T; 1], cosine: [T; 1]) {
+            let x = ray_plane(o.into(), d.into(), plane, low[0], high[0]);
+            ([x.t], [x.line], [x.distance], [x.cosine])
+        }
+    )
+}
 
 /// With `full` three more results: the line's nearest point, its distance, the discriminant.
 #[pyfunction]
