@@ -4,18 +4,25 @@
 //!
 //! - [`Bvh`]: a tree of boxes; nearest and any hit, singly or in batches
 //! - [`brute_force`]: every triangle, by the same rule: what every structure must return
+//! - [`uniform_grid`], [`octree`], [`kd_tree`], [`bsp_tree`]: space parted into cells
 //! - [`offset_ray`]: origins moved off their surface, so that rays do not meet it again
 
 mod block;
 mod bounds;
 mod nearest;
+mod cells;
+mod halving;
 mod ray;
 pub(crate) mod structure;
 
 pub mod brute_force;
+pub mod bsp_tree;
 pub mod bvh;
 pub mod morton;
+pub mod kd_tree;
+pub mod octree;
 pub mod offset_ray;
+pub mod uniform_grid;
 #[cfg_attr(not(feature = "python"), allow(dead_code))] // arrays of rays come from Python alone
 pub(crate) mod query;
 

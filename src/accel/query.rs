@@ -1,6 +1,6 @@
 //! Arrays of rays in, arrays of hits out: cut into pieces for the threads.
 
-use super::structure::{Counted, Stats, Structure, Uncounted};
+use super::structure::{Counted, Ordered, Stats, Structure, Uncounted};
 use super::{Hit, Ray};
 use crate::dispatch;
 use crate::parallel::{self, Interrupted, Pieces, Watch};
@@ -112,6 +112,8 @@ pub trait Queries<T: Real>: Send + Sync {
     ) -> Result<(), Interrupted>;
     /// The structure's size and make.
     fn make(&self) -> Stats;
+    /// Faces from front to back.
+    fn ordered(&self, eye: [T; 3]) -> Option<Ordered<T>>;
 }
 
 impl<T: Real, A: Structure<T>> Queries<T> for A {
@@ -190,6 +192,10 @@ impl<T: Real, A: Structure<T>> Queries<T> for A {
 
     fn make(&self) -> Stats {
         Structure::stats(self)
+    }
+
+    fn ordered(&self, eye: [T; 3]) -> Option<Ordered<T>> {
+        self.order(eye)
     }
 }
 

@@ -61,7 +61,7 @@ pub trait Visit<T: Real> {
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Stats {
     pub faces: usize,
-    /// Inner nodes; cells of a grid.
+    /// Inner nodes; a grid is one.
     pub nodes: usize,
     /// Leaves that hold triangles.
     pub leaves: usize,
@@ -77,6 +77,32 @@ pub struct Stats {
     pub triangles_per_block: f64,
 }
 
+/// Faces, or fragments of them, from front to back.
+#[derive(Debug, Default)]
+pub struct Ordered<T> {
+    pub face: Vec<i32>,
+    pub corners: Vec<[[T; 3]; 3]>,
+    /// Whether a face stands in the list.
+    listed: Vec<bool>,
+}
+
+impl<T: Real> Ordered<T> {
+    pub fn new(faces: usize) -> Self {
+        Ordered { face: vec![], corners: vec![], listed: vec![false; faces] }
+    }
+    /// Appends a whole face, once.
+    pub fn whole(&mut self, face: u32, corners: [[T; 3]; 3]) {
+        if !std::mem::replace(&mut self.listed[face as usize], true) {
+            self.part(face, corners);
+        }
+    }
+    /// Appends a part of a face.
+    pub fn part(&mut self, face: u32, corners: [[T; 3]; 3]) {
+        self.face.push(face as i32);
+        self.corners.push(corners);
+    }
+}
+
 /// A structure over triangles. What its queries return equals [`super::brute_force`] to the bit.
 pub trait Structure<T: Real>: Send + Sync {
     /// The exact bounds of all triangles: zeros if there are none.
@@ -86,6 +112,11 @@ pub trait Structure<T: Real>: Send + Sync {
 
     /// Hands triangles to `visit`, nearest first as far as the structure can tell. Should be `#[inline(always)]`.
     fn walk<S: Simd, V: Visit<T>>(&self, s: S, ray: &Ready<T>, heading: Heading, visit: &mut V);
+
+    /// Faces by their distance from an eye, as far as the structure orders space.
+    fn order(&self, _eye: [T; 3]) -> Option<Ordered<T>> {
+        None
+    }
 
     /// Rays that a thread takes at a time, some milliseconds' worth.
     fn rays_a_task(&self) -> usize {
@@ -265,16 +296,16 @@ pub struct Chances(f64);
 
 impl Chances {
     pub fn new<T: Real>(scene: [[T; 3]; 2]) -> Self {
-        Chances(area(scene))
+        Chances(half_surface(scene))
     }
     /// One in a scene without surface, all of whose boxes are alike.
     pub fn of<T: Real>(&self, inside: [[T; 3]; 2]) -> f64 {
-        if self.0 > 0.0 { area(inside) / self.0 } else { 1.0 }
+        if self.0 > 0.0 { half_surface(inside) / self.0 } else { 1.0 }
     }
 }
 
-/// Half the surface.
-fn area<T: Real>(corners: [[T; 3]; 2]) -> f64 {
+/// Half the surface of a box.
+pub fn half_surface<T: Real>(corners: [[T; 3]; 2]) -> f64 {
     let [x, y, z] = std::array::from_fn(|k| (corners[1][k].to_f64() - corners[0][k].to_f64()).max(0.0));
     x * y + y * z + z * x
 }

@@ -3,6 +3,7 @@
 import _thread
 import threading
 import time
+from functools import partial
 
 import hypothesis
 import numpy as np
@@ -13,6 +14,12 @@ from hypothesis import strategies as st
 A = sl.accel
 STRUCTURES = {
     "BVH": A.BVH,
+    "UniformGrid": A.UniformGrid,
+    "UniformGrid without mailbox": partial(A.UniformGrid, mailbox=False, cells_per_face=8),
+    "Octree": A.Octree,
+    "KDTree sah": A.KDTree,
+    "KDTree median": partial(A.KDTree, method="median"),
+    "BSPTree": A.BSPTree,
 }
 every_structure = pytest.mark.parametrize("make", STRUCTURES.values(), ids=STRUCTURES)
 precisions = pytest.mark.parametrize("dtype", [np.float32, np.float64])

@@ -22,7 +22,7 @@ class Stats(NamedTuple):
 
     faces: int
     nodes: int
-    """Inner nodes; cells of a grid."""
+    """Inner nodes; a grid is one."""
     leaves: int
     """Leaves, or cells, that hold triangles."""
     depth: int
@@ -99,7 +99,7 @@ class Structure:
         -------
         Stats
         """
-        return Stats(*self._tree.stats(), build_ms=self._build_ms)
+        return Stats._make((*self._tree.stats(), self._build_ms))
 
     def closest_hit(
         self,

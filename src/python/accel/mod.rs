@@ -1,7 +1,8 @@
-//! Bindings of `accel`: bvh, brute_force, offset_ray.
+//! Bindings of `accel`: bvh, uniform_grid, octree, kd_tree, bsp_tree, brute_force, morton, offset_ray.
 
 mod morton;
 mod points;
+mod cells;
 mod rays;
 mod tree;
 
@@ -14,7 +15,10 @@ pub mod accel {
     #[pymodule_export]
     use super::Tree;
     #[pymodule_export]
+    use super::cells::{bsp_tree, kd_tree, octree, uniform_grid};
+    #[pymodule_export]
     use super::morton::{morton_decode, morton_encode, radix_tree};
+    #[pymodule_export]
     use super::points::closest_point;
     use super::rays::{HitArrays, RayArrays};
     use super::tree::{self, Held, Other, queries};
@@ -25,7 +29,7 @@ pub mod accel {
     use crate::python::array::{In, Out, run};
     use crate::real;
     use numpy::IntoPyArray;
-    use pyo3::exceptions::PyValueError;
+    use pyo3::exceptions::{PyTypeError, PyValueError};
     use pyo3::prelude::*;
 
     #[pyfunction]
@@ -122,6 +126,23 @@ pub mod accel {
             let (structure, rays) = (queries::<T>(structure)?, RayArrays::<T>::of(&rays)?);
             let rays = rays.get()?;
             run(py, progress, |watch| structure.counts(watch, &rays, query, (boxes, triangles)))
+        })
+    }
+
+    /// Faces from front to back, and their corners.
+    #[pyfunction]
+    fn order<'py>(
+        py: Python<'py>,
+        structure: &Bound<'py, PyAny>,
+        eye: &Bound<'py, PyAny>,
+    ) -> PyResult<(Bound<'py, PyAny>, Bound<'py, PyAny>)> {
+        real!(eye, T => {
+            let (structure, eye) = (queries::<T>(structure)?, In::<T>::of("eye", eye)?);
+            let eye = eye.items()?[0];
+            let ordered = run(py, None, |_| Ok(structure.ordered(eye)))?;
+            let ordered = ordered.ok_or_else(|| PyTypeError::new_err("the structure does not order faces"))?;
+            let corners = ordered.corners.into_flattened().into_flattened();
+            Ok((ordered.face.into_pyarray(py).into_any(), corners.into_pyarray(py).into_any()))
         })
     }
 

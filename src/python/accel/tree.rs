@@ -113,7 +113,14 @@ impl Other {
     }
 }
 
+impl Other {
+    /// Behind Python, from a structure of either precision.
+    pub fn new<T: Held>(structure: impl Queries<T> + 'static) -> Self {
+        T::wrap_other(Arc::new(structure))
+    }
+}
+
 /// Every triangle, as a structure.
 pub fn brute_force<T: Held>(positions: &[[T; 3]], faces: &[[i32; 3]]) -> Other {
-    T::wrap_other(Arc::new(BruteForce::new(positions, faces)))
+    Other::new(BruteForce::new(positions, faces))
 }

@@ -1,0 +1,5 @@
+//! Binary space partitioning, by planes across axes or by the planes of the triangles themselves.
+
+mod aligned;
+
+pub use aligned::build as axis_aligned;
