@@ -38,9 +38,11 @@ mod tests {
 
     use super::*;
     use crate::real::Real;
-    use crate::vec::Vec3;
+    use crate::vec::{Vec3, Vec4};
+    use compose::Parts;
+    use euler::Order;
     use glam::dcamera::rh::{proj::directx, proj::opengl, view::look_at_mat4};
-    use glam::{DMat4, DVec3};
+    use glam::{DMat4, DQuat, DVec3, EulerRot};
     use projection::{Depth, Frustum};
 
     /// Numbers in [-1, 1) from a linear congruence.
@@ -92,6 +94,54 @@ mod tests {
             let [l, r, b, t, n, f] = planes;
             assert!(distance(ours, opengl::orthographic(l, r, b, t, n, f)) < tolerance);
         }
+    }
+
+    fn rotations_agree<T: Real>() {
+        let mut next = numbers();
+        let tolerance = 32.0 * T::EPSILON.to_f64();
+        let orders = [
+            ("XYZ", EulerRot::XYZ),
+            ("ZXZ", EulerRot::ZXZ),
+            ("zyx", EulerRot::ZYXEx),
+            ("yzy", EulerRot::YZYEx),
+        ];
+        for _ in 0..1000 {
+            let mut unit = || DQuat::from_xyzw(next(), next(), next(), next() + 0.1).normalize();
+            let (a, b) = (unit(), unit());
+            let t = |q: DQuat| Vec4::from(q.to_array().map(T::of));
+            let near = |ours: Vec4<T>, theirs: DQuat| {
+                ours.to_array().iter().zip(theirs.to_array()).all(|(x, y)| (x.to_f64() - y).abs() < tolerance)
+            };
+            let m = DMat4::from_quat(a);
+            assert!(near(quaternion::multiply(t(a), t(b)), a * b));
+            assert!(near(quaternion::inverse(t(a)), a.inverse()));
+            let toward = if a.dot(b) < 0.0 { -b } else { b };
+            assert!(near(quaternion::slerp(t(a), t(b), T::of(0.3), true), a.slerp(toward, 0.3)));
+            assert!(distance(affine::linear(quaternion::to_matrix(t(a))), m) < tolerance);
+            for (name, theirs) in orders {
+                let order = Order::from_name(name).unwrap();
+                let (x, y, z) = a.to_euler(theirs);
+                let ours = euler::euler([x, y, z].map(T::of), order);
+                // Beside gimbal lock their angles have fewer digits.
+                assert!(distance(affine::linear(ours), m) < 1e-7_f64.max(tolerance));
+            }
+            let parts = Parts {
+                translation: [next(), next(), next()].map(T::of),
+                rotation: t(a),
+                scale: [1.0 + next(), 2.0 + next(), 3.0 + next()].map(T::of),
+                shear: [T::zero(); 3],
+            };
+            let vector = |v: [T; 3]| DVec3::from_array(v.map(Real::to_f64));
+            let theirs =
+                DMat4::from_scale_rotation_translation(vector(parts.scale), a, vector(parts.translation));
+            assert!(distance(compose::compose(parts), theirs) < tolerance);
+        }
+    }
+
+    #[test]
+    fn rotations_are_glams() {
+        rotations_agree::<f32>();
+        rotations_agree::<f64>();
     }
 
     #[test]

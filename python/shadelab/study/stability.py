@@ -1,8 +1,8 @@
 """The stability table: every kernel at the extremes of its domain, against an oracle.
 
-A chapter's extremes stand in `study/extremes/<chapter>.py`. Each measures, in float32 and in float64, the largest
-error seen against a higher precision (mpmath, exact rationals, or float64 for float32), and counts NaN and infinity
-where none belongs. `claim` is what the docstring promises on that domain; `tests/extremes` holds it.
+A chapter's extremes stand in `study/extremes/<chapter>.py` (and `<chapter>_<part>.py`). Each measures, in float32 and in
+float64, the largest error seen against a higher precision (mpmath, exact rationals, or float64 for float32), and counts
+NaN and infinity where none belongs. `claim` is what the docstring promises on that domain; `tests/extremes` holds it.
 """
 
 from __future__ import annotations
@@ -89,12 +89,14 @@ def extremes(chapter: str | None = None) -> list[Extreme]:
     """
     from . import extremes as package
 
-    known = sorted(m.name for m in pkgutil.iter_modules(package.__path__))
+    files = sorted(m.name for m in pkgutil.iter_modules(package.__path__))
+    known = sorted({name.split("_")[0] for name in files})
     if chapter is not None and chapter not in known:
         raise ValueError(f"chapter: expected one of {', '.join(known)}, got {chapter!r}")
     names = known if chapter is None else [chapter]
-    for name in names:
-        importlib.import_module(f"{package.__name__}.{name}")
+    for file in files:
+        if file.split("_")[0] in names:
+            importlib.import_module(f"{package.__name__}.{file}")
     return [e for name in names for e in _REGISTRY.get(name, [])]
 
 

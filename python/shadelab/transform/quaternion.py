@@ -170,7 +170,7 @@ def quaternion_rotate(q: ArrayLike, vectors: ArrayLike) -> Floats:
 
     Notes
     -----
-    Each component errs by at most 4 rounding units of the vector's length. Many vectors under one rotation go faster
+    Each component errs by at most 5 rounding units of the vector's length. Many vectors under one rotation go faster
     through `quaternion_to_matrix` and `transform_vectors`.
 
     Examples

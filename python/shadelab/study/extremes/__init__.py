@@ -1,1 +1,1 @@
-"""The extremes of each chapter, one file a chapter (see `shadelab.study.stability`)."""
+"""The extremes of each chapter, one file a chapter or part of one (see `shadelab.study.stability`)."""
