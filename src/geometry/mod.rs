@@ -11,6 +11,7 @@
 //! - [`plane_aabb`], [`plane_obb`]: the side of a plane on which boxes lie
 //! - [`aabb_aabb`], [`obb_obb`], [`sphere_sphere`], [`sphere_aabb`], [`sphere_triangle`], [`triangle_aabb`],
 //!   [`polygon_aabb`], [`triangle_triangle`]: whether two things have a point in common; all decided exactly ([`predicate`])
+//! - [`frustum_planes`] of a projection; how [`frustum_aabb`], [`frustum_obb`], [`frustum_sphere`] lie to them: conservative
 
 pub mod barycentric;
 pub mod closest_point_triangle;
@@ -35,3 +36,7 @@ pub mod triangle_aabb;
 pub mod polygon_aabb;
 pub mod triangle_triangle;
 pub mod segment_segment;
+pub mod frustum_planes;
+pub mod frustum_aabb;
+pub mod frustum_obb;
+pub mod frustum_sphere;

@@ -17,6 +17,7 @@ from numpy.typing import ArrayLike, NDArray
 from .. import _arrays
 from .._arrays import Floats
 from .._kernels import geometry as _kernels
+from .frustum import nine
 
 __all__ = [
     "AxisGaps",
@@ -129,10 +130,7 @@ def _boxes(prefix: str, lower: ArrayLike, upper: ArrayLike) -> Given:
 
 
 def _obb(prefix: str, center: ArrayLike, axes: ArrayLike, half: ArrayLike) -> Given:
-    # Three rows become nine numbers: the precision that the axes ask for goes with them.
-    rows = _arrays.matrices(f"{prefix}axes", axes, 3)
-    nine = rows.reshape(*rows.shape[:-2], 9)
-    flat: ArrayLike = nine if hasattr(axes, "dtype") else nine.tolist()
+    flat = nine(f"{prefix}axes", axes)
     return {f"{prefix}center": (center, 3), f"{prefix}axes": (flat, 9), f"{prefix}half_extents": (half, 3)}
 
 

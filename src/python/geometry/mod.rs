@@ -1,5 +1,6 @@
 //! Bindings of `geometry`, a file for each of its faces.
 
+mod frustum;
 mod overlap;
 mod lines;
 mod points;
@@ -10,6 +11,14 @@ use pyo3::prelude::*;
 
 #[pymodule]
 pub mod geometry {
+    #[pymodule_export]
+    use super::frustum::frustum_aabb;
+    #[pymodule_export]
+    use super::frustum::frustum_obb;
+    #[pymodule_export]
+    use super::frustum::frustum_planes;
+    #[pymodule_export]
+    use super::frustum::frustum_sphere;
     #[pymodule_export]
     use super::lines::line_line;
     #[pymodule_export]
