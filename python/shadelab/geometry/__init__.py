@@ -1,14 +1,8 @@
-<<<<<<< HEAD
-"""Rays, lines and points against primitives; overlap tests."""
+"""Rays, lines and points against primitives; overlap tests; frusta."""
 
-from . import lines, overlap, points, ray_boxes, rays
-from .lines import *  # noqa: F403
-=======
-"""Rays against primitives, overlap tests, frusta, and barycentric coordinates."""
-
-from . import frustum, overlap, points, rays
+from . import frustum, lines, overlap, points, ray_boxes, rays
 from .frustum import *  # noqa: F403
->>>>>>> 4eb56d9 (Add frusta: planes out of a matrix, boxes and balls told inside or outside without loss)
+from .lines import *  # noqa: F403
 from .overlap import *  # noqa: F403
 from .points import *  # noqa: F403
 from .ray_boxes import *  # noqa: F403
@@ -16,8 +10,8 @@ from .rays import *  # noqa: F403
 
 __all__: list[str] = []
 __all__ += frustum.__all__
-__all__ += overlap.__all__
 __all__ += lines.__all__
+__all__ += overlap.__all__
 __all__ += points.__all__
 __all__ += ray_boxes.__all__
 __all__ += rays.__all__
