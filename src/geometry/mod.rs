@@ -12,6 +12,7 @@
 //! - [`aabb_aabb`], [`obb_obb`], [`sphere_sphere`], [`sphere_aabb`], [`sphere_triangle`], [`triangle_aabb`],
 //!   [`polygon_aabb`], [`triangle_triangle`]: whether two things have a point in common; all decided exactly ([`predicate`])
 //! - [`frustum_planes`] of a projection; how [`frustum_aabb`], [`frustum_obb`], [`frustum_sphere`] lie to them: conservative
+//! - [`clip_segment`], [`clip_polygon`], [`clip_homogeneous`]: what of things lies within a window
 
 pub mod barycentric;
 pub mod closest_point_triangle;
@@ -22,7 +23,6 @@ pub mod ray_plane;
 pub mod ray_sphere;
 pub mod ray_triangle;
 
-pub(crate) use crate::math::exact;
 pub(crate) mod predicate;
 pub mod three_planes;
 pub mod plane_aabb;
@@ -40,3 +40,6 @@ pub mod frustum_planes;
 pub mod frustum_aabb;
 pub mod frustum_obb;
 pub mod frustum_sphere;
+pub mod clip_segment;
+pub mod clip_polygon;
+pub mod clip_homogeneous;

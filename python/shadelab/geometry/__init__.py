@@ -1,6 +1,7 @@
-"""Rays, lines and points against primitives; overlap tests; frusta."""
+"""Rays, lines and points against primitives; overlap tests; frusta; clipping."""
 
-from . import frustum, lines, overlap, points, ray_boxes, rays
+from . import clip, frustum, lines, overlap, points, ray_boxes, rays
+from .clip import *  # noqa: F403
 from .frustum import *  # noqa: F403
 from .lines import *  # noqa: F403
 from .overlap import *  # noqa: F403
@@ -9,6 +10,7 @@ from .ray_boxes import *  # noqa: F403
 from .rays import *  # noqa: F403
 
 __all__: list[str] = []
+__all__ += clip.__all__
 __all__ += frustum.__all__
 __all__ += lines.__all__
 __all__ += overlap.__all__

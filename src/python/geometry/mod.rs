@@ -1,5 +1,6 @@
 //! Bindings of `geometry`, a file for each of its faces.
 
+mod clip;
 mod frustum;
 mod overlap;
 mod lines;
@@ -11,6 +12,14 @@ use pyo3::prelude::*;
 
 #[pymodule]
 pub mod geometry {
+    #[pymodule_export]
+    use super::clip::clip_homogeneous;
+    #[pymodule_export]
+    use super::clip::clip_polygon;
+    #[pymodule_export]
+    use super::clip::clip_segment_2;
+    #[pymodule_export]
+    use super::clip::clip_segment_3;
     #[pymodule_export]
     use super::frustum::frustum_aabb;
     #[pymodule_export]
