@@ -3,8 +3,11 @@
 //!
 //! - [`barycentric`]: coordinates of points in triangles
 //! - [`closest_point_triangle`]: the nearest point of a triangle
+//! - [`perspective_barycentric`]: from coordinates on the screen to those on the triangle
+//! - [`point_in_polygon`], [`signed_area`], [`sort_by_angle`]: polygons in the plane
 //! - [`line_line`], [`segment_segment`]: where two lines, or segments, come nearest
 //! - [`ray_plane`], [`ray_aabb`], [`ray_obb`]: a ray against a plane, an axis-aligned and an oriented box
+//! - [`ray_polygon`]: a ray against a flat polygon, convex or not
 //! - [`ray_sphere`]: a ray against a sphere: robust, quadratic, geometric
 //! - [`ray_triangle`]: a ray against a triangle: watertight, Möller-Trumbore, plane
 //! - [`three_planes`]: the point where planes meet
@@ -20,6 +23,9 @@ pub mod line_line;
 pub mod ray_aabb;
 pub mod ray_obb;
 pub mod ray_plane;
+pub mod perspective_barycentric;
+pub mod point_in_polygon;
+pub mod ray_polygon;
 pub mod ray_sphere;
 pub mod ray_triangle;
 
@@ -43,3 +49,5 @@ pub mod frustum_sphere;
 pub mod clip_segment;
 pub mod clip_polygon;
 pub mod clip_homogeneous;
+pub mod signed_area;
+pub mod sort_by_angle;

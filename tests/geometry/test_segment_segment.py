@@ -12,7 +12,8 @@ PRECISIONS = pytest.mark.parametrize("dtype", [np.float32, np.float64])
 
 
 def exact(a, b, c, d):
-    """The least distance: at an end of a segment, or inside of both."""
+    """The least distance, at an end of a segment or inside of both; whether the rounded differences are parallel."""
+    parallel = not any(cross(vector(b - a), vector(d - c)))
     a, b, c, d = (vector(v) for v in (a, b, c, d))
     u, v, w = sub(b, a), sub(d, c), sub(c, a)
     pairs = [(0, nearest_on_segment(a, c, d)), (1, nearest_on_segment(b, c, d))]
@@ -23,7 +24,7 @@ def exact(a, b, c, d):
         if 0 <= s <= 1 and 0 <= t <= 1:
             pairs.append((s, t))
     between = [sub(add(w, times(v, t)), times(u, s)) for s, t in pairs]
-    return root(min(dot(x, x) for x in between)), not any(n)
+    return root(min(dot(x, x) for x in between)), parallel
 
 
 def check(segments, pair, dtype):

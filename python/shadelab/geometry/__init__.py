@@ -1,11 +1,12 @@
 """Rays, lines and points against primitives; overlap tests; frusta; clipping."""
 
-from . import clip, frustum, lines, overlap, points, ray_boxes, rays
+from . import clip, frustum, lines, overlap, points, polygons, ray_boxes, rays
 from .clip import *  # noqa: F403
 from .frustum import *  # noqa: F403
 from .lines import *  # noqa: F403
 from .overlap import *  # noqa: F403
 from .points import *  # noqa: F403
+from .polygons import *  # noqa: F403
 from .ray_boxes import *  # noqa: F403
 from .rays import *  # noqa: F403
 
@@ -15,5 +16,6 @@ __all__ += frustum.__all__
 __all__ += lines.__all__
 __all__ += overlap.__all__
 __all__ += points.__all__
+__all__ += polygons.__all__
 __all__ += ray_boxes.__all__
 __all__ += rays.__all__

@@ -111,7 +111,8 @@ def segment_segment(a: ArrayLike, b: ArrayLike, c: ArrayLike, d: ArrayLike) -> N
     -----
     Computed in the promoted precision of all arguments. Parallel, overlapping and crossing segments, and segments that
     are points, need no care: no tolerance takes part. `distance` is right to 8 machine epsilons of the larger of the
-    segments' lengths and their distance; `parallel` is exact, and true of points. NaN or infinity gives NaN at that
+    segments' lengths and their distance; `parallel` says that the differences of the ends, as rounded, are so, and is
+    true of points. NaN or infinity gives NaN at that
     element.
 
     References

@@ -5,6 +5,7 @@ mod frustum;
 mod overlap;
 mod lines;
 mod points;
+mod polygons;
 mod ray_boxes;
 mod rays;
 
@@ -70,6 +71,16 @@ pub mod geometry {
     use super::points::barycentric;
     #[pymodule_export]
     use super::points::closest_point_triangle;
+    #[pymodule_export]
+    use super::points::perspective_barycentric;
+    #[pymodule_export]
+    use super::polygons::point_in_polygon;
+    #[pymodule_export]
+    use super::polygons::ray_polygon;
+    #[pymodule_export]
+    use super::polygons::signed_area;
+    #[pymodule_export]
+    use super::polygons::sort_by_angle;
     #[pymodule_export]
     use super::ray_boxes::ray_aabb;
     #[pymodule_export]

@@ -1,4 +1,4 @@
-//! Bindings of points: barycentric, closest_point_triangle.
+//! Bindings of points: barycentric, perspective_barycentric, closest_point_triangle.
 
 use crate::elementwise;
 use crate::geometry as kernels;
@@ -25,4 +25,16 @@ pub fn closest_point_triangle(py: Python<'_>, given: Arrays<'_>, out: Arrays<'_>
             (x.point.to_array(), [x.distance], x.weights, [x.region])
         }
     )
+}
+
+#[pyfunction]
+pub fn perspective_barycentric(
+    py: Python<'_>,
+    inverse: bool,
+    given: Arrays<'_>,
+    out: Arrays<'_>,
+) -> PyResult<()> {
+    elementwise!(py, given, out, |weights: [T; 3], w: [T; 3]| -> (found: [T; 3]) {
+        kernels::perspective_barycentric::perspective_barycentric(inverse, weights, w)
+    })
 }
