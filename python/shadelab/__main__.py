@@ -61,10 +61,16 @@ def _parser() -> argparse.ArgumentParser:
     commands = parser.add_subparsers(dest="command", required=True, metavar="COMMAND", parser_class=_Parser)
 
     study = commands.add_parser("study", help="measure what techniques cost and what they lose; write a report")
-    study.add_argument("model", nargs="?", type=Path, help=f"your own mesh ({MODELS}); the question's scenes otherwise")
-    study.add_argument("--question", default="soft shadows", help="what to ask (default: soft shadows)")
+    study.add_argument(
+        "subject",
+        nargs="*",
+        help=f"what to ask, such as acceleration, and your own mesh ({MODELS}); the question's scenes otherwise",
+    )
+    study.add_argument("--question", help="what to ask (default: soft shadows)")
     bound = study.add_mutually_exclusive_group()
-    bound.add_argument("--max-error", type=_positive, help="choose the cheapest that keeps this error (default: 0.02)")
+    bound.add_argument(
+        "--max-error", type=_positive, help="choose the cheapest with this error (default: the question's own)"
+    )
     bound.add_argument("--budget-ms", type=_positive, help="choose the most accurate within these milliseconds a frame")
     study.add_argument("--size", type=_size, help="of the pictures, such as 1280x720 (default: the question's own)")
     study.add_argument("--threads", type=_count(1, 4096), help="threads to measure with (default: one a core)")
@@ -96,15 +102,16 @@ def _parser() -> argparse.ArgumentParser:
 def _study(options: argparse.Namespace) -> int:
     from . import scene, study
 
+    name, model = _subject(options.subject, options.question)
+    question = study.find(name)
     max_error, budget_ms = options.max_error, options.budget_ms
     if max_error is None and budget_ms is None:
-        max_error = 0.02
-    question = study.find(options.question)
+        max_error = question.max_error
     out: Path = options.out
     if out.exists() and not out.is_dir():
         raise NotADirectoryError(f"{out}: not a directory")
     out.mkdir(parents=True, exist_ok=True)
-    scenes = None if options.model is None else {options.model.stem: scene.load(options.model)}
+    scenes = None if model is None else {model.stem: scene.load(model)}
     result = study.run(
         question,
         scenes,
@@ -128,6 +135,19 @@ def _study(options: argparse.Namespace) -> int:
     page = result.report(out, max_error=max_error, budget_ms=budget_ms)
     print(f"\nreport: {page}")
     return status
+
+
+def _subject(given: Sequence[str], asked: str | None) -> tuple[str, Path | None]:
+    """The question and the model, in this order, each of which may be missing."""
+    from . import study
+
+    rest = list(given)
+    if rest and asked is None and rest[0].lower().replace("-", " ").replace("_", " ") in study.questions():
+        asked = rest.pop(0)
+    if len(rest) > 1:
+        known = ", ".join(map(repr, study.questions()))
+        raise ValueError(f"expected a question ({known}) and a model, got {' '.join(map(repr, given))}")
+    return asked or "soft shadows", Path(rest[0]) if rest else None
 
 
 def _render(options: argparse.Namespace) -> int:

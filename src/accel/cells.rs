@@ -100,10 +100,19 @@ pub fn visit_faces<T: Real, S: Simd, V: Visit<T>>(
             return false;
         }
         let block = Block::new(four[..n].iter().map(|&face| (face as i32, triangles.corners(face))));
-        if visit.leaf(s, std::slice::from_ref(&block)) {
+        if leaf(s, &block, visit) {
             return true;
         }
     }
+}
+
+/// Enters the level anew rather than being inlined, so that it is compiled once for all structures.
+#[inline(never)]
+fn leaf<T: Real, S: Simd, V: Visit<T>>(s: S, block: &Block<T>, visit: &mut V) -> bool {
+    s.vectorize(
+        #[inline(always)]
+        || visit.leaf(s, std::slice::from_ref(block)),
+    )
 }
 
 /// Where a ray enters and leaves the scene's box, within its interval.

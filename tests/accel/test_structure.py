@@ -19,7 +19,8 @@ STRUCTURES = {
     "Octree": A.Octree,
     "KDTree sah": A.KDTree,
     "KDTree median": partial(A.KDTree, method="median"),
-    "BSPTree": A.BSPTree,
+    "BSPTree axis-aligned": A.BSPTree,
+    "BSPTree polygon-aligned": partial(A.BSPTree, method="polygon_aligned"),
 }
 every_structure = pytest.mark.parametrize("make", STRUCTURES.values(), ids=STRUCTURES)
 precisions = pytest.mark.parametrize("dtype", [np.float32, np.float64])

@@ -141,7 +141,7 @@ def run(
         _arrays.number("patience", patience, 0.0),
         _arrays.number("fraction", fraction, above=0.0),
         _arrays.number("reference_seconds", reference_seconds, 0.0),
-        causes,
+        causes and question.causes,
         cache,
     )
     if not plan.settings and not plan.external:

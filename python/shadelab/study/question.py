@@ -238,6 +238,10 @@ class Question:
         Width and height that the question is asked at unless told otherwise.
     about : str
         One paragraph: what is asked and why.
+    causes : bool
+        Whether errors can be split by cause; False where what is judged is no answer but a price.
+    max_error : float
+        The bound that the command line asks for unless told otherwise.
     """
 
     name: str
@@ -254,6 +258,8 @@ class Question:
     plan: Callable[[Case], Any] | None = None
     size: tuple[int, int] = (640, 360)
     about: str = ""
+    causes: bool = True
+    max_error: float = 0.02
 
     def __post_init__(self) -> None:
         if isinstance(self.reference, MonteCarlo) and self.metric.aggregate != "rms":

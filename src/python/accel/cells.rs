@@ -63,6 +63,7 @@ pub fn bsp_tree(
     py: Python<'_>,
     positions: &Bound<'_, PyAny>,
     faces: &Bound<'_, PyAny>,
+    method: &str,
     leaf_size: usize,
     max_depth: usize,
     progress: Option<Py<PyAny>>,
@@ -70,6 +71,10 @@ pub fn bsp_tree(
     real!(positions, T => {
         let (p, f) = (In::<T>::of("positions", positions)?, In::<i32>::of("faces", faces)?);
         let (p, f) = (p.items()?, f.items()?);
-        Ok(Other::new(run(py, progress, |w| bsp::axis_aligned::<T>(w, p, f, leaf_size, max_depth))?))
+        Ok(if method == "polygon_aligned" {
+            Other::new(run(py, progress, |w| bsp::PolygonTree::<T>::build(w, p, f, leaf_size, max_depth))?)
+        } else {
+            Other::new(run(py, progress, |w| bsp::axis_aligned::<T>(w, p, f, leaf_size, max_depth))?)
+        })
     })
 }
