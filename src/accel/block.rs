@@ -130,7 +130,7 @@ fn test<T: Real, S: Simd>(
 }
 
 #[inline(always)]
-fn splat4<T: Real, S: Simd>(s: S, x: T) -> T::V4<S> {
+pub fn splat4<T: Real, S: Simd>(s: S, x: T) -> T::V4<S> {
     SimdBase::splat(s, x)
 }
 
@@ -146,7 +146,7 @@ fn splat4x3<T: Real, S: Simd>(s: S, v: [T; 3]) -> [T::V4<S>; 3] {
 
 /// One vertex of each of four triangles.
 #[inline(always)]
-fn corner<T: Real, S: Simd>(s: S, block: &Block<T>, vertex: usize, order: [usize; 3]) -> [T::V4<S>; 3] {
+pub fn corner<T: Real, S: Simd>(s: S, block: &Block<T>, vertex: usize, order: [usize; 3]) -> [T::V4<S>; 3] {
     let [x, y, z] = in_order(order, [0, 1, 2]);
     let v = &block.vertices[vertex];
     [

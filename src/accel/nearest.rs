@@ -8,7 +8,7 @@
 //! monotonically, so it never exceeds that from a box inside. A triangle's squared distance is raised to that of its
 //! own box, and equal ones go to the lowest face: hence no box can hide the answer, and trees give what brute force does.
 
-use super::block::{BLOCK, Block};
+use super::block::{BLOCK, Block, corner, splat4};
 use crate::real::{Lanes, Real};
 use crate::simd::{Simd, SimdBase};
 use crate::vec::Vec3;
@@ -86,15 +86,19 @@ fn edge<V: Lanes>(p: Vec3<V>, q: Vec3<V>, e: Vec3<V>) -> (V, V) {
     (V::select(s.equal(one), q.length_squared(), at), s)
 }
 
+/// The number of a feature: an edge, or the vertex that it starts from or leads to.
+#[inline(always)]
+fn feature<V: Lanes>(s: V, edge: f64, from: f64, to: f64) -> V {
+    let end = V::select(s.equal(s.num(1.0)), s.num(to), s.num(edge));
+    V::select(s.equal(s.num(0.0)), s.num(from), end)
+}
+
 /// The nearest points of triangles with corners `a`, `b`, `c`, seen from `p`.
 #[inline(always)]
 fn candidate<V: Lanes>(p: Vec3<V>, [a, b, c]: [Vec3<V>; 3]) -> Candidate<V> {
     let (zero, one) = (p.x.num(0.0), p.x.num(1.0));
     let (ab, bc, ca) = (b - a, c - b, a - c);
     let (a, b, c) = (a - p, b - p, c - p);
-    let feature = |s: V, edge: f64, from: f64, to: f64| {
-        V::select(s.equal(zero), s.num(from), V::select(s.equal(one), s.num(to), s.num(edge)))
-    };
     let (d, s) = edge(a, b, ab);
     let mut best = Candidate { square: d, u: s, v: zero, feature: feature(s, 1.0, 4.0, 5.0) };
     let (d, s) = edge(b, c, bc);
@@ -104,7 +108,8 @@ fn candidate<V: Lanes>(p: Vec3<V>, [a, b, c]: [Vec3<V>; 3]) -> Candidate<V> {
 
     // The foot of the perpendicular. The normal's longest component is scaled to one: its square may overflow or vanish.
     let n = ab.cross(-ca);
-    let unit = n.map(|x| x / n.x.abs().max(n.y.abs()).max(n.z.abs()));
+    let largest = n.x.abs().max(n.y.abs()).max(n.z.abs());
+    let unit = Vec3::new(n.x / largest, n.y / largest, n.z / largest);
     let double_area = n.dot(unit);
     let (mut u, mut v, mut foot) = (zero, zero, a);
     // Again from what is left: on slivers one solution is far from the foot, along the plane. What remains perpendicular
@@ -122,9 +127,11 @@ fn candidate<V: Lanes>(p: Vec3<V>, [a, b, c]: [Vec3<V>; 3]) -> Candidate<V> {
 /// Keeps the nearest point to `p` of a leaf's triangles.
 #[inline(always)]
 pub fn leaf<T: Real, S: Simd>(s: S, blocks: &[Block<T>], p: [T; 3], nearest: &mut Nearest<T>) {
-    let point = Vec3::from(p.map(|x| <T::V4<S> as SimdBase<S>>::splat(s, x)));
+    let point = Vec3::new(splat4(s, p[0]), splat4(s, p[1]), splat4(s, p[2]));
     for block in blocks {
-        let corners = block.vertices.map(|v| Vec3::from(v.map(|x| SimdBase::load_array(s, x))));
+        let order = [0, 1, 2];
+        let [a, b, c] = [corner(s, block, 0, order), corner(s, block, 1, order), corner(s, block, 2, order)];
+        let corners = [Vec3::from(a), Vec3::from(b), Vec3::from(c)];
         let found = candidate(point, corners);
         let own = own_box(point, corners);
         let square = Lanes::max(found.square, own);
@@ -155,8 +162,8 @@ pub fn leaf<T: Real, S: Simd>(s: S, blocks: &[Block<T>], p: [T; 3], nearest: &mu
 /// The squared distances from triangles' own boxes, as [`box_square`] has them: differences round monotonically.
 #[inline(always)]
 fn own_box<V: Lanes>(p: Vec3<V>, [a, b, c]: [Vec3<V>; 3]) -> V {
-    let low = a.zip(b, V::min).zip(c, V::min);
-    let high = a.zip(b, V::max).zip(c, V::max);
+    let low = Vec3::new(a.x.min(b.x).min(c.x), a.y.min(b.y).min(c.y), a.z.min(b.z).min(c.z));
+    let high = Vec3::new(a.x.max(b.x).max(c.x), a.y.max(b.y).max(c.y), a.z.max(b.z).max(c.z));
     box_square(p, low, high)
 }
 
@@ -164,6 +171,11 @@ fn own_box<V: Lanes>(p: Vec3<V>, [a, b, c]: [Vec3<V>; 3]) -> V {
 #[inline(always)]
 pub fn box_square<V: Lanes>(p: Vec3<V>, low: Vec3<V>, high: Vec3<V>) -> V {
     let zero = p.x.num(0.0);
-    let apart = (low - p).zip(p - high, V::max).map(|x| x.max(zero));
+    let (below, above) = (low - p, p - high);
+    let apart = Vec3::new(
+        below.x.max(above.x).max(zero),
+        below.y.max(above.y).max(zero),
+        below.z.max(above.z).max(zero),
+    );
     apart.length_squared()
 }

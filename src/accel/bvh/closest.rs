@@ -21,7 +21,7 @@ impl<T: Real> Bvh<T> {
     #[inline(always)]
     pub fn closest_point<S: Simd>(&self, s: S, p: [T; 3], max_distance: T) -> Nearest<T> {
         let mut nearest = Nearest::within(max_distance);
-        let point = Vec3::from(p.map(|x| splat8::<T, S>(s, x)));
+        let point = Vec3::new(splat8::<T, S>(s, p[0]), splat8::<T, S>(s, p[1]), splat8::<T, S>(s, p[2]));
         let mut stack = Stack::new();
         stack.push(Entry::new(T::zero(), Child::ROOT));
         while let Some(entry) = stack.pop() {
@@ -34,8 +34,8 @@ impl<T: Real> Bvh<T> {
                 continue;
             }
             let node = self.node(child);
-            let low = Vec3::from([0, 1, 2].map(|k| planes(s, node, 0, k)));
-            let high = Vec3::from([0, 1, 2].map(|k| planes(s, node, 1, k)));
+            let low = Vec3::new(planes(s, node, 0, 0), planes(s, node, 0, 1), planes(s, node, 0, 2));
+            let high = Vec3::new(planes(s, node, 1, 0), planes(s, node, 1, 1), planes(s, node, 1, 2));
             // Empty slots are at infinity.
             let squares = box_square(point, low, high);
             let mask = Lanes::less_eq(squares, splat8::<T, S>(s, nearest.square));

@@ -13,6 +13,8 @@ mod single;
 mod stats;
 mod stream;
 mod walk;
+#[cfg_attr(not(feature = "python"), allow(dead_code))] // as above
+pub(crate) mod winding;
 
 use super::block::Block;
 use super::{Hit, Ray, bounds, ray};

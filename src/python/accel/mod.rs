@@ -19,7 +19,7 @@ pub mod accel {
     #[pymodule_export]
     use super::morton::{morton_decode, morton_encode, radix_tree};
     #[pymodule_export]
-    use super::points::closest_point;
+    use super::points::{Moments, Pseudonormals, closest_point, winding_number};
     use super::rays::{HitArrays, RayArrays};
     use super::tree::{self, Held, Other, queries};
     use crate::accel as kernels;

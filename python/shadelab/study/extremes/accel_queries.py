@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from ... import accel
+from ... import accel, mesh
 from ..stability import Measurement, extreme
 
 Array = NDArray[Any]
@@ -105,3 +105,31 @@ def _exact_square(point: Array, corners: Array) -> Fraction:
             left = [x - u * y - v * z for x, y, z in zip(w, e, f, strict=True)]
             best = min(best, dot(left, left))
     return best
+
+
+@extreme(
+    "accel.BVH.winding_number", "next to the surface", domain="closed, 1e-12 to 1e-1 away", unit="absolute", claim=1e-9
+)
+def _next_to_the_surface(dtype: np.dtype[Any]) -> Measurement:
+    box = mesh.icosphere(2)
+    p, f = np.asarray(box.positions, dtype), box.faces
+    rng = np.random.default_rng(5)
+    on = (rng.dirichlet([1, 1, 1], 4000)[..., None] * p[f[rng.integers(len(f), size=4000)]]).sum(1)
+    q = (on * (1 + 10 ** rng.uniform(-12, -1, (4000, 1)) * rng.choice([-1, 1], (4000, 1)))).astype(dtype)
+    w = accel.BVH(p, f).winding_number(q, max_error=0)
+    # Points that rounding put onto the surface have a half.
+    off = np.abs(w - 0.5) > 1e-6
+    return Measurement(float(np.abs(w - np.round(w))[off].max()), int(off.sum()), int(np.isnan(w).sum()))
+
+
+@extreme("accel.BVH.contains", "far from the origin", domain="sphere of 1 at 1e3 (f64: 1e9)", unit="count", claim=0)
+def _contains_far(dtype: np.dtype[Any]) -> Measurement:
+    ball = mesh.icosphere(2)
+    shift = 1e3 if dtype == np.float32 else 1e9
+    p = (np.asarray(ball.positions) + shift).astype(dtype)
+    rng = np.random.default_rng(6)
+    d = rng.normal(size=(3000, 3))
+    r = rng.choice([0.9, 1.1], (3000, 1))
+    q = (r * d / np.linalg.norm(d, axis=-1, keepdims=True) + shift).astype(dtype)
+    wrong = accel.BVH(p, ball.faces).contains(q) != (r[:, 0] < 1)
+    return Measurement(float(wrong.sum()), len(q))
