@@ -8,6 +8,7 @@ pub mod vec;
 pub mod math;
 pub mod simd;
 pub mod parallel;
+pub mod memory;
 
 pub mod transform;
 pub mod sampling;

@@ -11,7 +11,7 @@ CHAPTERS = (
     "transform sampling image color curve geometry mesh accel sdf texture brdf light sh environment scene cull "
     "raster pathtrace shadow gi denoise antialias renderer study"
 ).split()
-FOUNDATION = {"math", "parallel", "real", "simd", "vec"}
+FOUNDATION = {"math", "memory", "parallel", "real", "simd", "vec"}
 
 RUST = sorted(p for p in (ROOT / "src").rglob("*.rs") if p.name != "tests.rs")
 KERNELS = [p for p in RUST if p.relative_to(ROOT / "src").parts[0] in CHAPTERS]

@@ -17,8 +17,9 @@
 //! S. Woop, C. Benthin, I. Wald, *Watertight Ray/Triangle Intersection*, 2013, section 3.3, pads with the same idea.
 
 use super::{Hit, Ray};
-use crate::geometry::ray_triangle::{direction_scale, dominant_axis, finite, permutation};
+use crate::geometry::ray_triangle::{along, direction_scale, dominant_axis, finite, permutation};
 use crate::real::{Lanes, Real};
+use crate::simd::{Simd, SimdBase};
 use crate::vec::Vec3;
 
 /// Which way rays go: uniform over a packet.
@@ -67,50 +68,160 @@ pub fn proper<V: Lanes>(o: [V; 3], d: [V; 3], t_min: V, t_max: V) -> V::Mask {
     origin & direction & smallest.less_eq(longest) & t_min.equal(t_min) & t_max.equal(t_max)
 }
 
-/// `bounds` are the scene's. The rays must be [`proper`] and of this heading.
+/// A ray, or lanes of rays of any headings, before its axes are put in order: what costs most, and alike for all.
+#[derive(Clone, Copy)]
+pub struct Prepared<V> {
+    near: [V; 3],
+    far: [V; 3],
+    inverse: [V; 3],
+    origin: [V; 3],
+    /// The direction over its dominant component.
+    slope: [V; 3],
+    /// One over the dominant component.
+    steepest: V,
+    t_min: V,
+    t_max: V,
+    scale: V,
+}
+
+/// `bounds` are the scene's. The rays should be [`proper`].
 #[inline(always)]
 pub fn prepare<V: Lanes>(
     bounds: &[[V::Elem; 3]; 2],
-    heading: Heading,
     o: [V; 3],
     d: [V; 3],
     t_min: V,
     t_max: V,
-) -> Ready<V> {
-    let order = heading.order;
+) -> Prepared<V> {
     let (one, eps) = (o[0].num(1.0), o[0].like(<V::Elem as Real>::EPSILON));
-    let smallest = one.like(<V::Elem as Real>::MIN_POSITIVE);
-    let (scale, unscale) = direction_scale(d[order[2]].abs());
-    let d = [d[0] * scale, d[1] * scale, d[2] * scale];
+    let (zero, smallest) = (one.num(0.0), one.like(<V::Elem as Real>::MIN_POSITIVE));
+    let (x, y) = (along(0, d), along(1, d));
+    let (scale, unscale) = direction_scale(pick(x, y, d).abs());
 
     let mut reach = o;
     for k in 0..3 {
         let (low, high) = (one.like(bounds[0][k]) - o[k], one.like(bounds[1][k]) - o[k]);
         reach[k] = low.abs().max(high.abs());
     }
+    let furthest = pick(x, y, reach);
     let (mut near, mut far, mut inverse) = (o, o, o);
     for k in 0..3 {
-        let pad = one.num(4.0) * eps * (reach[k] + reach[order[2]]) + eps * o[k].abs() + smallest;
-        let pad = if heading.negative[k] == 1 { -pad } else { pad };
-        (near[k], far[k]) = (o[k] + pad, o[k] - pad);
         // The heading's sign, which -0 and what underflows share.
-        let steep = one / d[k].abs().max(smallest);
-        inverse[k] = if heading.negative[k] == 1 { -steep } else { steep };
+        let negative = d[k].less(zero);
+        let pad = one.num(4.0) * eps * (reach[k] + furthest) + eps * o[k].abs() + smallest;
+        let pad = V::select(negative, -pad, pad);
+        (near[k], far[k]) = (o[k] + pad, o[k] - pad);
+        let steep = one / (d[k] * scale).abs().max(smallest);
+        inverse[k] = V::select(negative, -steep, steep);
     }
-
-    let q = inverse[order[2]];
+    let steepest = pick(x, y, inverse);
+    let slope = [d[0] * scale * steepest, d[1] * scale * steepest, d[2] * scale * steepest];
     // Hits beyond the largest number are misses, so that a hit's `t` is always finite.
     let t_max = t_max.min(one.like(<V::Elem as Real>::MAX)) * unscale;
-    Ready {
-        near,
-        far,
-        inverse,
-        origin: Vec3::new(o[order[0]], o[order[1]], o[order[2]]),
-        shear: Vec3::new(d[order[0]] * q, d[order[1]] * q, q),
-        t_min: t_min * unscale,
-        t_max,
-        scale,
+    Prepared { near, far, inverse, origin: o, slope, steepest, t_min: t_min * unscale, t_max, scale }
+}
+
+/// The first where `x` holds, the second where `y` does, else the third.
+#[inline(always)]
+fn pick<V: Lanes>(x: V::Mask, y: V::Mask, v: [V; 3]) -> V {
+    V::select(x, v[0], V::select(y, v[1], v[2]))
+}
+
+impl<V> Prepared<V> {
+    /// With the axes in the order of a heading, which must be that of every lane.
+    #[inline(always)]
+    pub fn ready(&self, heading: Heading) -> Ready<V>
+    where
+        V: Copy,
+    {
+        self.map(
+            heading,
+            #[inline(always)]
+            |v| *v,
+        )
     }
+
+    /// The same of a part, as one of several lanes.
+    #[inline(always)]
+    pub fn map<W>(&self, heading: Heading, of: impl Fn(&V) -> W) -> Ready<W> {
+        let [x, y, z] = heading.order;
+        Ready {
+            near: three(&self.near, &of),
+            far: three(&self.far, &of),
+            inverse: three(&self.inverse, &of),
+            origin: Vec3::new(of(&self.origin[x]), of(&self.origin[y]), of(&self.origin[z])),
+            shear: Vec3::new(of(&self.slope[x]), of(&self.slope[y]), of(&self.steepest)),
+            t_min: of(&self.t_min),
+            t_max: of(&self.t_max),
+            scale: of(&self.scale),
+        }
+    }
+
+    /// The same number everywhere.
+    pub fn all(v: V) -> Self
+    where
+        V: Copy,
+    {
+        let three = [v; 3];
+        let (near, far, inverse, origin, slope) = (three, three, three, three, three);
+        Prepared { near, far, inverse, origin, slope, steepest: v, t_min: v, t_max: v, scale: v }
+    }
+
+    /// Every number through `f`.
+    #[inline(always)]
+    pub fn each<W>(&self, f: impl Fn(&V) -> W) -> Prepared<W> {
+        Prepared {
+            near: three(&self.near, &f),
+            far: three(&self.far, &f),
+            inverse: three(&self.inverse, &f),
+            origin: three(&self.origin, &f),
+            slope: three(&self.slope, &f),
+            steepest: f(&self.steepest),
+            t_min: f(&self.t_min),
+            t_max: f(&self.t_max),
+            scale: f(&self.scale),
+        }
+    }
+}
+
+#[inline(always)]
+fn three<V, W>(v: &[V; 3], f: &impl Fn(&V) -> W) -> [W; 3] {
+    [f(&v[0]), f(&v[1]), f(&v[2])]
+}
+
+/// Eight rays in lanes: their origins, directions and intervals.
+#[derive(Clone, Copy)]
+pub struct Eight<V> {
+    pub origin: [V; 3],
+    pub direction: [V; 3],
+    pub t_min: V,
+    pub t_max: V,
+}
+
+impl<V> Eight<V> {
+    #[inline(always)]
+    pub fn load<T: Real<V8<S> = V>, S: Simd>(s: S, rays: impl Fn(usize) -> Ray<T>) -> Self {
+        let (mut o, mut d) = ([[T::zero(); 8]; 3], [[T::zero(); 8]; 3]);
+        let (mut low, mut high) = ([T::zero(); 8], [T::zero(); 8]);
+        for l in 0..8 {
+            let ray = rays(l);
+            for k in 0..3 {
+                (o[k][l], d[k][l]) = (ray.origin[k], ray.direction[k]);
+            }
+            (low[l], high[l]) = (ray.t_min, ray.t_max);
+        }
+        Eight {
+            origin: [load8(s, &o[0]), load8(s, &o[1]), load8(s, &o[2])],
+            direction: [load8(s, &d[0]), load8(s, &d[1]), load8(s, &d[2])],
+            t_min: load8(s, &low),
+            t_max: load8(s, &high),
+        }
+    }
+}
+
+#[inline(always)]
+pub fn load8<T: Real, S: Simd>(s: S, x: &[T; 8]) -> T::V8<S> {
+    SimdBase::load_array_ref(s, x)
 }
 
 /// One ray and its heading; None if it is no ray (see [`proper`]).
@@ -120,7 +231,7 @@ pub fn ready<T: Real>(bounds: &[[T; 3]; 2], ray: &Ray<T>) -> Option<(Ready<T>, H
         return None;
     }
     let heading = Heading::of(ray.direction);
-    Some((prepare(bounds, heading, ray.origin, ray.direction, ray.t_min, ray.t_max), heading))
+    Some((prepare(bounds, ray.origin, ray.direction, ray.t_min, ray.t_max).ready(heading), heading))
 }
 
 impl<T: Real> Ready<T> {

@@ -51,8 +51,8 @@ def morton_encode(
     Raises
     ------
     TypeError, ValueError
-        If an argument is not real or of the wrong shape, a cell number is out of range, a point is not finite or outside
-        the box, or the box is empty.
+        If an argument is not real or of the wrong shape, a cell number is out of range, a point is not finite or
+        outside the box, or the box is empty.
 
     Notes
     -----

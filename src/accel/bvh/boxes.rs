@@ -2,6 +2,7 @@
 //! of two boxes is one minimum of eight lanes.
 
 use crate::accel::bounds::LARGE;
+use crate::memory;
 use crate::real::Real;
 use crate::simd::{Simd, SimdBase, f32x8};
 use fearless_simd::{SimdCombine, SimdSplit};
@@ -95,7 +96,9 @@ pub fn items<T: Real>(positions: &[[T; 3]], faces: &[[i32; 3]], relative: Relati
         let high = [-least(-a[0], -b[0], -c[0]), -least(-a[1], -b[1], -c[1]), -least(-a[2], -b[2], -c[2])];
         Item::new(low, high, face)
     };
-    (0..faces.len()).into_par_iter().with_min_len(LARGE).map(item).collect()
+    let mut items = memory::list(faces.len());
+    (0..faces.len()).into_par_iter().with_min_len(LARGE).map(item).collect_into_vec(&mut items);
+    items
 }
 
 #[inline(always)]

@@ -12,6 +12,7 @@ use super::node::{Child, MAX_DEPTH};
 use crate::accel::block::BLOCK;
 use crate::accel::bounds::LARGE;
 use crate::dispatch;
+use crate::memory;
 use crate::real;
 use crate::simd::{Simd, SimdBase, f32x4, f32x8};
 use fearless_simd::{SimdCvtTruncate, SimdSplit, i32x4};
@@ -48,8 +49,10 @@ impl Branch {
 
 /// The binary tree over `items`, which it orders. Cut short, and of no use, once `stop` is set.
 pub fn binary_tree(items: &mut [Item], split: Split, stop: &AtomicBool) -> Vec<Branch> {
-    let mut branches = vec![Branch::EMPTY; (2 * items.len()).max(1)];
-    let mut scratch = items.to_vec();
+    let mut branches = memory::list((2 * items.len()).max(1));
+    branches.resize((2 * items.len()).max(1), Branch::EMPTY);
+    let mut scratch = memory::list(items.len());
+    scratch.extend_from_slice(items);
     dispatch!(s => {
         let centres = reduce(items, |items| centres_of(s, items), merged);
         let list = List { items, scratch: &mut scratch, first: 0, out: &mut branches, at: 0, centres };

@@ -7,6 +7,7 @@ use super::boxes::Item;
 use super::build::Branch;
 use super::node::{Child, Node, WIDTH};
 use crate::accel::block::{BLOCK, Block};
+use crate::memory;
 use crate::real::Real;
 use rayon::prelude::*;
 use std::mem::MaybeUninit;
@@ -119,8 +120,8 @@ pub fn collapse<T: Real, B: Tree>(
     // A leaf at the root is the only child of a node.
     let lone = tree.span(root).2;
     let plan = mesh.plan(root);
-    let mut nodes = Vec::with_capacity(plan.nodes + lone as usize);
-    let mut blocks = Vec::with_capacity(plan.blocks);
+    let mut nodes = memory::list(plan.nodes + lone as usize);
+    let mut blocks = memory::list(plan.blocks);
     let out = Stretch {
         nodes: nodes.spare_capacity_mut(),
         node: 0,

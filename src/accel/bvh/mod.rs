@@ -139,11 +139,13 @@ impl<T: Real> Bvh<T> {
         let mut apart: Vec<u32> = Vec::new();
         let whole = count - count % packet::SIZE;
         for first in (0..whole).step_by(packet::SIZE) {
-            let mut run = [Ray::new([T::zero(); 3], [T::zero(); 3]); packet::SIZE];
-            for (l, ray) in run.iter_mut().enumerate() {
-                *ray = rays(first + l);
-            }
-            match packet::gather(s, self, &run) {
+            let packet = packet::gather(
+                s,
+                self,
+                #[inline(always)]
+                |l| rays(first + l),
+            );
+            match packet {
                 Some(mut packet) => {
                     packet.trace::<ANY>(s, self);
                     for l in 0..packet::SIZE {

@@ -78,6 +78,14 @@ impl Entry {
     pub fn child(self) -> Child {
         Child(self.0 as u32)
     }
+    #[inline(always)]
+    pub fn min(self, other: Self) -> Self {
+        Entry(self.0.min(other.0))
+    }
+    #[inline(always)]
+    pub fn max(self, other: Self) -> Self {
+        Entry(self.0.max(other.0))
+    }
     /// Whether it is entered after a `t` of this [`key`].
     #[inline(always)]
     pub fn after(self, key: u32) -> bool {

@@ -11,7 +11,7 @@ use super::Bvh;
 use super::node::{Child, Entry, Node, Stack, key};
 use super::single::{planes, splat8};
 use crate::accel::block::{BLOCK, Block, in_order, own_box};
-use crate::accel::ray::{Heading, Ready, prepare, proper, slabs};
+use crate::accel::ray::{Eight, Heading, Ready, load8, prepare, proper, slabs};
 use crate::accel::{Hit, Ray};
 use crate::geometry::ray_triangle::{along, watertight};
 use crate::real::{Lanes, Real};
@@ -41,15 +41,27 @@ pub struct Packet<T: Real, S: Simd> {
 
 /// A packet of rays that share their heading and stay close together; None if they do not.
 #[inline(always)]
-pub fn gather<T: Real, S: Simd>(s: S, tree: &Bvh<T>, rays: &[Ray<T>; SIZE]) -> Option<Packet<T, S>> {
-    let heading = Heading::of(rays[0].direction);
+pub fn gather<T: Real, S: Simd>(s: S, tree: &Bvh<T>, rays: impl Fn(usize) -> Ray<T>) -> Option<Packet<T, S>> {
+    let heading = Heading::of(rays(0).direction);
     // Most batches without coherence are told apart here.
-    if Heading::of(rays[SIZE - 1].direction) != heading || Heading::of(rays[SIZE / 2].direction) != heading {
+    if Heading::of(rays(SIZE - 1).direction) != heading || Heading::of(rays(SIZE / 2).direction) != heading {
         return None;
     }
     let rays_ready = [
-        gather_group(s, tree, heading, rays.first_chunk()?)?,
-        gather_group(s, tree, heading, rays.last_chunk()?)?,
+        gather_group(
+            s,
+            tree,
+            heading,
+            #[inline(always)]
+            |l| rays(l),
+        )?,
+        gather_group(
+            s,
+            tree,
+            heading,
+            #[inline(always)]
+            |l| rays(8 + l),
+        )?,
     ];
     if !close(tree, heading, &rays_ready) {
         return None;
@@ -64,7 +76,7 @@ pub fn gather<T: Real, S: Simd>(s: S, tree: &Bvh<T>, rays: &[Ray<T>; SIZE]) -> O
     }
     let mut ignore = [-1; SIZE];
     for i in 0..SIZE {
-        ignore[i] = rays[i].ignore_face;
+        ignore[i] = rays(i).ignore_face;
     }
     Some(Packet {
         heading,
@@ -87,20 +99,9 @@ fn gather_group<T: Real, S: Simd>(
     s: S,
     tree: &Bvh<T>,
     heading: Heading,
-    rays: &[Ray<T>; 8],
+    rays: impl Fn(usize) -> Ray<T>,
 ) -> Option<Ready<T::V8<S>>> {
-    let (mut o, mut d) = ([[T::zero(); 8]; 3], [[T::zero(); 8]; 3]);
-    let (mut low, mut high) = ([T::zero(); 8], [T::zero(); 8]);
-    for l in 0..8 {
-        for k in 0..3 {
-            o[k][l] = rays[l].origin[k];
-            d[k][l] = rays[l].direction[k];
-        }
-        (low[l], high[l]) = (rays[l].t_min, rays[l].t_max);
-    }
-    let o = [load8(s, &o[0]), load8(s, &o[1]), load8(s, &o[2])];
-    let d: [T::V8<S>; 3] = [load8(s, &d[0]), load8(s, &d[1]), load8(s, &d[2])];
-    let (low, high) = (load8::<T, S>(s, &low), load8::<T, S>(s, &high));
+    let Eight { origin: o, direction: d, t_min: low, t_max: high } = Eight::load(s, rays);
     let mut same = proper(o, d, low, high) & along(heading.order[2], d);
     for k in 0..3 {
         let negative = d[k].less(d[k].num(0.0));
@@ -109,18 +110,13 @@ fn gather_group<T: Real, S: Simd>(
     if T::V8::<S>::bits(same) != 0xff {
         return None;
     }
-    Some(prepare(&tree.bounds, heading, o, d, low, high))
+    Some(prepare(&tree.bounds, o, d, low, high).ready(heading))
 }
 
 /// The least and the greatest of sixteen lanes.
 #[inline(always)]
 fn range<T: Real, V: SimdBase<S, Element = T> + Lanes<Elem = T>, S: Simd>(a: V, b: V) -> [T; 2] {
     [SimdBase::min(a, b).reduce_min(), SimdBase::max(a, b).reduce_max()]
-}
-
-#[inline(always)]
-fn load8<T: Real, S: Simd>(s: S, x: &[T; 8]) -> T::V8<S> {
-    SimdBase::load_array_ref(s, x)
 }
 
 /// Whether the rays pass the first and the last plane of the scene, across the heading, close together.

@@ -67,25 +67,33 @@ pub fn trace<const ANY: bool, T: Real, S: Simd>(
             }
             let node = tree.node(child);
             let (mut bits, entries) = children(s, node, ray, heading, hit.t);
-            let Some(first) = next(&mut bits, node, &entries) else { break };
-            // Most often one or two children are passed: the nearer is gone into, the other waits.
-            let Some(second) = next(&mut bits, node, &entries) else {
-                child = first.child();
-                continue;
-            };
-            let (mut nearest, later) = if second < first { (second, first) } else { (first, second) };
-            let base = stack.len();
-            stack.push(later);
-            while let Some(mut other) = next(&mut bits, node, &entries) {
-                if other < nearest {
-                    std::mem::swap(&mut other, &mut nearest);
-                }
-                stack.insert(base, other);
-            }
-            child = nearest.child();
+            let Some(nearest) = descend(&mut bits, node, &entries, &mut stack) else { break };
+            child = nearest;
         }
     }
     hit
+}
+
+/// The nearest of the passed children; the others wait on the stack.
+#[inline(always)]
+pub fn descend<T: Real>(
+    bits: &mut u32,
+    node: &Node<T>,
+    entries: &[T; 8],
+    stack: &mut Stack,
+) -> Option<Child> {
+    let first = next(bits, node, entries)?;
+    // Most often one or two children are passed.
+    let Some(second) = next(bits, node, entries) else { return Some(first.child()) };
+    // Minimum and maximum rather than a comparison, whose outcome could not be guessed.
+    let mut nearest = first.min(second);
+    let base = stack.len();
+    stack.push(first.max(second));
+    while let Some(other) = next(bits, node, entries) {
+        stack.insert(base, other.max(nearest));
+        nearest = other.min(nearest);
+    }
+    Some(nearest.child())
 }
 
 /// The next passed child, and where the ray enters it.

@@ -4,10 +4,10 @@
 use super::node::{Child, Stack, key};
 use super::{Bvh, single};
 use crate::accel::block::leaf;
-use crate::accel::ray::{Heading, Ready, ready};
+use crate::accel::ray::{Eight, Heading, Prepared, Ready, prepare, proper};
 use crate::accel::{Hit, Ray};
-use crate::real::Real;
-use crate::simd::Simd;
+use crate::real::{Lanes, Real};
+use crate::simd::{Simd, SimdBase};
 
 /// Rays under way at a time.
 const ROWS: usize = 16;
@@ -50,15 +50,8 @@ impl<T: Real> Row<T> {
         } else {
             let node = tree.node(self.child);
             let (mut bits, entries) = single::children(s, node, &self.ray, self.heading, self.hit.t);
-            if let Some(mut nearest) = single::next(&mut bits, node, &entries) {
-                let base = self.stack.len();
-                while let Some(mut other) = single::next(&mut bits, node, &entries) {
-                    if other < nearest {
-                        std::mem::swap(&mut other, &mut nearest);
-                    }
-                    self.stack.insert(base, other);
-                }
-                self.child = nearest.child();
+            if let Some(nearest) = single::descend(&mut bits, node, &entries, &mut self.stack) {
+                self.child = nearest;
                 tree.prefetch(self.child);
                 return true;
             }
@@ -75,24 +68,70 @@ impl<T: Real> Row<T> {
     }
 }
 
-/// The next of the `chosen` rays that is one, from `next` on; those that are none are answered at once.
-#[inline(always)]
-fn take<T: Real, R: Fn(usize) -> Ray<T>, F: FnMut(usize, Hit<T>)>(
-    tree: &Bvh<T>,
-    rays: &R,
-    chosen: &[u32],
-    next: &mut usize,
-    answer: &mut F,
-) -> Option<(usize, i32, (Ready<T>, Heading))> {
-    while let Some(&index) = chosen.get(*next) {
-        *next += 1;
-        let ray = rays(index as usize);
-        match ready(&tree.bounds, &ray) {
-            Some(made) => return Some((index as usize, ray.ignore_face, made)),
-            None => answer(index as usize, Hit::no_ray()),
-        }
+/// The rays that wait, of which eight at a time are made ready.
+struct Queue<'a, T: Real, R> {
+    bounds: &'a [[T; 3]; 2],
+    rays: R,
+    chosen: &'a [u32],
+    /// The next ray to take, the lanes of those that were made ready with it, and those that are no rays.
+    next: usize,
+    lanes: Prepared<[T; 8]>,
+    proper: u32,
+}
+
+impl<'a, T: Real, R: Fn(usize) -> Ray<T>> Queue<'a, T, R> {
+    #[inline(always)]
+    fn new<S: Simd>(s: S, bounds: &'a [[T; 3]; 2], rays: R, chosen: &'a [u32]) -> Self {
+        let zero = [T::zero(); 8];
+        let lanes = Prepared::all(zero);
+        let mut queue = Queue { bounds, rays, chosen, next: 0, lanes, proper: 0 };
+        queue.fill(s);
+        queue
     }
-    None
+
+    #[inline(always)]
+    fn fill<S: Simd>(&mut self, s: S) {
+        let last = self.chosen.len() - 1;
+        let Eight { origin, direction, t_min, t_max } = Eight::load(
+            s,
+            #[inline(always)]
+            |l| (self.rays)(self.chosen[(self.next + l).min(last)] as usize),
+        );
+        self.proper = T::V8::<S>::bits(proper(origin, direction, t_min, t_max));
+        self.lanes = prepare(self.bounds, origin, direction, t_min, t_max).each(
+            #[inline(always)]
+            |v| v.to_array(),
+        );
+    }
+
+    /// The next of the rays that is one; those that are none are answered at once.
+    #[inline(always)]
+    fn take<S: Simd>(
+        &mut self,
+        s: S,
+        answer: &mut impl FnMut(usize, Hit<T>),
+    ) -> Option<(usize, i32, (Ready<T>, Heading))> {
+        while let Some(&index) = self.chosen.get(self.next) {
+            let l = self.next % 8;
+            if l == 0 && self.next > 0 {
+                self.fill(s);
+            }
+            self.next += 1;
+            if self.proper >> l & 1 == 0 {
+                answer(index as usize, Hit::no_ray());
+                continue;
+            }
+            let ray = (self.rays)(index as usize);
+            let heading = Heading::of(ray.direction);
+            let ready = self.lanes.map(
+                heading,
+                #[inline(always)]
+                |v| v[l],
+            );
+            return Some((index as usize, ray.ignore_face, (ready, heading)));
+        }
+        None
+    }
 }
 
 /// Traces the `chosen` rays and hands each answer, with its ray's index, to `answer`.
@@ -104,10 +143,13 @@ pub fn trace<const ANY: bool, T: Real, S: Simd, R: Fn(usize) -> Ray<T>, F: FnMut
     chosen: &[u32],
     mut answer: F,
 ) {
-    let mut next = 0;
+    if chosen.is_empty() {
+        return;
+    }
+    let mut queue = Queue::new(s, &tree.bounds, rays, chosen);
     let mut rows: Vec<Row<T>> = Vec::with_capacity(ROWS.min(chosen.len()));
     while rows.len() < ROWS
-        && let Some((index, ignore, made)) = take(tree, &rays, chosen, &mut next, &mut answer)
+        && let Some((index, ignore, made)) = queue.take(s, &mut answer)
     {
         rows.push(Row::new(index, ignore, made));
     }
@@ -120,7 +162,7 @@ pub fn trace<const ANY: bool, T: Real, S: Simd, R: Fn(usize) -> Ray<T>, F: FnMut
                 continue;
             }
             answer(row.index, row.ray.finish(row.hit));
-            match take(tree, &rays, chosen, &mut next, &mut answer) {
+            match queue.take(s, &mut answer) {
                 Some((index, ignore, made)) => row.restart(index, ignore, made),
                 None => {
                     rows.swap_remove(i);
