@@ -122,6 +122,8 @@ def _study(options: argparse.Namespace) -> int:
         progress=_progress(question.name),
     )
     print(result.table())
+    if len(result.cases) > 1:
+        print(f"\n{result.by_case()}")
     status = 0
     try:
         print(f"\nchoice: {result.pick(max_error=max_error, budget_ms=budget_ms)}")

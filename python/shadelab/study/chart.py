@@ -5,17 +5,19 @@ from __future__ import annotations
 import html
 import io
 import math
+from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
-from .records import Choice, Summary, figure_text
+from .records import Choice, Summary, figure_text, setting_text
+from .statistics import Interval
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
     from .results import Study
 
-__all__ = ["COLORS", "figure", "svg"]
+__all__ = ["COLORS", "cases_svg", "figure", "marker_path", "svg"]
 
 COLORS = ("#0072b2", "#d55e00", "#009e73", "#cc79a7", "#b8860b", "#56b4e9", "#7a5195", "#666666")
 """After Okabe and Ito, told apart with every kind of colour vision; markers differ too."""
@@ -30,7 +32,7 @@ class _Point:
     summary: Summary
     on_front: bool
     technique: int
-    ms: float
+    cost: Interval
     error: float
     low: float
     high: float
@@ -43,12 +45,13 @@ def _points(study: Study) -> tuple[list[_Point], list[str]]:
     techniques = list(dict.fromkeys(r.technique for r in study.records))
     seen = [s.error.value for s in able if s.error.value > 0]
     floor = min(seen, default=1e-3) / 3
+    unit = study.cost_unit().per_ms
     return [
         _Point(
             s,
             s.setting in front,
             techniques.index(s.technique),
-            s.ms.value,
+            Interval(s.ms.value * unit, s.ms.low * unit, s.ms.high * unit),
             max(s.error.value, floor),
             max(s.error.low, floor),
             max(s.error.high, floor),
@@ -61,19 +64,19 @@ def _stairs(points: list[_Point]) -> list[tuple[float, float]]:
     """The line of what one can have: at each time, the least error of the front so far."""
     line: list[tuple[float, float]] = []
     best = math.inf
-    for p in sorted((p for p in points if p.on_front), key=lambda p: p.ms):
+    for p in sorted((p for p in points if p.on_front), key=lambda p: p.cost.value):
         if p.error < best:
             if line:
-                line.append((p.ms, best))
+                line.append((p.cost.value, best))
             best = p.error
-            line.append((p.ms, best))
+            line.append((p.cost.value, best))
     return line
 
 
 def _labels(study: Study) -> tuple[str, str]:
     where = f", worst of {len(study.cases)} cases" if len(study.cases) > 1 else ""
     unit = f" ({study.metric['unit']})" if study.metric["unit"] else ""
-    return f"milliseconds a frame{where}", f"{study.metric['name']}{unit}{where}"
+    return f"{study.cost_unit().long}{where}", f"{study.metric['name']}{unit}{where}"
 
 
 def figure(study: Study) -> Figure:
@@ -102,10 +105,11 @@ def figure(study: Study) -> Figure:
         for p in own:
             dim = 1.0 if p.on_front else 0.35
             spans: dict[str, Any] = {
-                "xerr": [[p.ms - p.summary.ms.low], [p.summary.ms.high - p.ms]],
+                "xerr": [[p.cost.value - p.cost.low], [p.cost.high - p.cost.value]],
                 "yerr": [[p.error - p.low], [p.high - p.error]],
             }
-            axes.errorbar([p.ms], [p.error], **spans, fmt=marker, color=color, alpha=dim, markersize=6, elinewidth=0.8)
+            style: dict[str, Any] = {"fmt": marker, "color": color, "alpha": dim, "markersize": 6, "elinewidth": 0.8}
+            axes.errorbar([p.cost.value], [p.error], **spans, **style)
         if own:
             axes.plot([], [], marker, color=color, label=technique)
     if points:
@@ -134,10 +138,11 @@ class _Axis:
         return self.start + min(max(t, 0.0), 1.0) * (self.end - self.start)
 
     def ticks(self) -> list[float]:
-        """Powers of ten, with 2 and 5 between where there are few."""
+        """Powers of ten, with 2 and 5 between where there are few, every second or third where there are many."""
         few = self.high - self.low < 2.5
         steps = (1, 2, 5) if few else (1,)
-        decades = range(math.floor(self.low), math.ceil(self.high) + 1)
+        apart = max(math.ceil((self.high - self.low) * 60 / abs(self.end - self.start)), 1)
+        decades = [e for e in range(math.floor(self.low), math.ceil(self.high) + 1) if e % apart == 0]
         return [m * 10.0**e for e in decades for m in steps if self.low <= math.log10(m * 10.0**e) <= self.high]
 
 
@@ -146,8 +151,8 @@ def svg(study: Study, width: int, height: int, choice: Choice | None = None) -> 
     points, _ = _points(study)
     if not points:
         return ""
-    left, right, top, bottom = 58, 12, 12, 44
-    x = _Axis([v for p in points for v in (p.summary.ms.low, p.summary.ms.high)], left, width - right)
+    left, right, top, bottom = 70, 12, 12, 44
+    x = _Axis([v for p in points for v in (p.cost.low, p.cost.high)], left, width - right)
     y = _Axis([v for p in points for v in (p.low, p.high)], height - bottom, top)
     out = [f'<svg class="chart" viewBox="0 0 {width} {height}" width="{width}" role="img" aria-label="error and time">']
     for v in x.ticks():
@@ -171,13 +176,13 @@ def svg(study: Study, width: int, height: int, choice: Choice | None = None) -> 
 
 def _names(points: list[_Point], x: _Axis, y: _Axis, end: float) -> list[str]:
     """The knobs of those on the front beside their points, where there is room for them."""
-    taken = [(x(p.ms) - 7, y(p.error) - 7, x(p.ms) + 7, y(p.error) + 7) for p in points]
+    taken = [(x(p.cost.value) - 7, y(p.error) - 7, x(p.cost.value) + 7, y(p.error) + 7) for p in points]
     out = []
     for p in sorted((p for p in points if p.on_front), key=lambda p: p.error):
         text = ", ".join(figure_text(v) if isinstance(v, float) else str(v) for v in p.summary.knobs.values())
         wide = 6.6 * len(text)
         for dx, dy in ((10, -7), (10, 15), (-10 - wide, 15), (-10 - wide, -7)):
-            left, base = x(p.ms) + dx, y(p.error) + dy
+            left, base = x(p.cost.value) + dx, y(p.error) + dy
             box = (left, base - 11, left + wide, base + 2)
             free = all(box[2] < a or box[0] > c or box[3] < b or box[1] > d for a, b, c, d in taken)
             if text and free and x.start < box[0] and box[2] < end and y.end < box[1] and box[3] < y.start:
@@ -190,10 +195,10 @@ def _names(points: list[_Point], x: _Axis, y: _Axis, end: float) -> list[str]:
 def _mark(p: _Point, x: _Axis, y: _Axis, choice: Choice | None) -> str:
     """A point with its intervals, a shape for its technique, and a title that a pointer shows."""
     color = COLORS[p.technique % len(COLORS)]
-    s, px, py = p.summary, x(p.ms), y(p.error)
+    s, px, py = p.summary, x(p.cost.value), y(p.error)
     title = f"{s.setting}: error {figure_text(s.error.value)}, {figure_text(s.ms.value)} ms"
     bars = (
-        f'<path d="M{x(s.ms.low):.1f} {py:.1f}H{x(s.ms.high):.1f}M{px:.1f} {y(p.low):.1f}V{y(p.high):.1f}" '
+        f'<path d="M{x(p.cost.low):.1f} {py:.1f}H{x(p.cost.high):.1f}M{px:.1f} {y(p.low):.1f}V{y(p.high):.1f}" '
         f'stroke="{color}" fill="none"/>'
     )
     ring = ""
@@ -202,6 +207,46 @@ def _mark(p: _Point, x: _Axis, y: _Axis, choice: Choice | None) -> str:
     shape = marker_path(p.technique, px, py)
     dim = "" if p.on_front else ' opacity="0.35"'
     return f'<g{dim}><title>{html.escape(title)}</title>{bars}<path d="{shape}" fill="{color}"/>{ring}</g>'
+
+
+def cases_svg(study: Study, settings: Sequence[tuple[str, dict[str, Any]]], width: int) -> str:
+    """The error of each setting, case by case, a line for each case: where a technique holds, and where it breaks."""
+    techniques = list(dict.fromkeys(r.technique for r in study.records))
+    names = {setting_text(*s): techniques.index(s[0]) for s in settings}
+    first = {i: name for name, i in reversed(names.items())}
+    found = {(r.case, r.setting): r for r in study.records if r.setting in names and r.error.known}
+    seen = [r.error.value for r in found.values() if r.error.value > 0]
+    if not seen:
+        return ""
+    # Errors too small to be seen stand at the left end.
+    floor = min(seen) / 3
+    wide, left, top, step = width > 600, 12, 12, 26
+    left += 7 * max(len(c.name) for c in study.cases) if wide else 0
+    step = step if wide else 40
+    height = top + step * len(study.cases) + 34
+    x = _Axis([floor, *seen], left, width - 12)
+    out = [f'<svg class="chart" viewBox="0 0 {width} {height}" width="{width}" role="img" aria-label="error by case">']
+    for v in x.ticks():
+        out.append(f'<line class="grid" x1="{x(v):.1f}" x2="{x(v):.1f}" y1="{top}" y2="{height - 34}"/>')
+        out.append(f'<text x="{x(v):.1f}" y="{height - 16}" text-anchor="middle">{v:g}</text>')
+    for row, case in enumerate(study.cases):
+        y = top + step * (row + (0.5 if wide else 0.75))
+        at = f'x="{left - 8}" y="{y + 4:.1f}" text-anchor="end"' if wide else f'x="{left}" y="{y - 14:.1f}"'
+        out.append(f"<text {at}>{html.escape(case.name)}</text>")
+        out.append(f'<line class="grid" x1="{left}" x2="{width - 12}" y1="{y:.1f}" y2="{y:.1f}"/>')
+        for name, i in names.items():
+            if (record := found.get((case.key, name))) is not None:
+                e, color = record.error, COLORS[i % len(COLORS)]
+                low, high = (x(max(v, floor)) for v in (e.low, e.high))
+                fill = f'fill="{color}"' if first[i] == name else 'fill="none" stroke-width="1.5"'
+                title = f"{name}, {case.name}: error {figure_text(e.value)}"
+                out.append(
+                    f'<g opacity="0.85"><title>{html.escape(title)}</title>'
+                    f'<path d="M{low:.1f} {y:.1f}H{high:.1f}" stroke="{color}" fill="none"/>'
+                    f'<path d="{marker_path(i, x(max(e.value, floor)), y)}" stroke="{color}" {fill}/></g>'
+                )
+    out.append("</svg>")
+    return "".join(out)
 
 
 def marker_path(technique: int, x: float, y: float, r: float = 5.5) -> str:

@@ -248,6 +248,8 @@ def _run(plan: _Plan, cases: list[Case], progress: Any) -> Study:
             "unit": question.metric.unit,
             "about": question.metric.about,
             "aggregate": question.metric.aggregate,
+            "low": question.metric.signs[0],
+            "high": question.metric.signs[1],
         },
         {"name": question.mask.name, "about": question.mask.about},
         tuple(records),
@@ -261,6 +263,7 @@ def _run(plan: _Plan, cases: list[Case], progress: Any) -> Study:
             "fraction": plan.fraction,
             "reference_seconds": plan.reference_seconds,
             "confidence": statistics.CONFIDENCE,
+            "element": question.element,
         },
         {name: c.about for name, c in known.items()} | {e.title: "A picture from elsewhere." for e in plan.external},
         {name: (f.__doc__ or "").strip() for name, f in question.also.items()},
@@ -335,6 +338,7 @@ def _measure(
         plan_text,
         plan_html,
         tuple(left_out),
+        judge.mask.size,
     )
     return records, about
 

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 from . import chart
 from .chart import COLORS, marker_path
 from .records import Choice, figure_text
-from .tables import html_table
+from .tables import cases_table, html_table
 
 if TYPE_CHECKING:
     from .report import CaseStrip
@@ -53,7 +53,8 @@ dd{margin:0;overflow-wrap:anywhere;max-width:80ch}
 table.plain{border-collapse:collapse;font-size:.9em}
 table.plain th,table.plain td{padding:.25em .7em .25em 0;text-align:left;border-bottom:1px solid var(--line)}
 pre{overflow-x:auto;background:var(--box);padding:.8em;font-size:.85em}
-main .shadelab-table td:first-child{white-space:normal;min-width:12em;max-width:18em}
+main .shadelab-table td:first-child{white-space:normal;min-width:12em;max-width:22em;overflow-wrap:anywhere}
+main .cases th{white-space:normal;overflow-wrap:anywhere;min-width:7em;max-width:11em;vertical-align:bottom}
 @media screen and (max-width:720px){
 .wide{display:none}.narrow{display:block}
 .strip{grid-template-columns:1fr 1fr}
@@ -86,11 +87,13 @@ def html_page(study: Study, strips: list[CaseStrip], choice: Choice | None, refu
         f"<p>{_text(study.about)}</p>",
         _choice_box(choice, refusal),
         '<nav><a href="#front">Front</a><a href="#figures">Figures</a>',
+        '<a href="#cases">Case by case</a>' if len(study.cases) > 1 else "",
         '<a href="#pictures">Pictures</a>' if strips else "",
         '<a href="#measured">How it was measured</a><a href="#machine">Machine</a></nav>',
         _front(study, choice),
         _figures(study, choice),
-        _pictures(strips),
+        _cases(study, choice),
+        _pictures(study, strips),
         _plans(study),
         _measured(study),
         _machine(study),
@@ -120,12 +123,6 @@ def _choice_box(choice: Choice | None, refusal: str) -> str:
 
 
 def _front(study: Study, choice: Choice | None) -> str:
-    techniques = list(dict.fromkeys(r.technique for r in study.records))
-    legend = "".join(
-        f'<span><svg viewBox="-8 -8 16 16"><path d="{marker_path(i, 0, 0)}" fill="{COLORS[i % len(COLORS)]}"/></svg>'
-        f"{_text(t)}</span>"
-        for i, t in enumerate(techniques)
-    )
     ring = " The ring marks the choice." if choice is not None else ""
     worst = f", each with its worst over {len(study.cases)} cases" if len(study.cases) > 1 else ""
     return (
@@ -135,17 +132,27 @@ def _front(study: Study, choice: Choice | None) -> str:
         f"knobs.{ring}</p>"
         f'<div class="wide">{chart.svg(study, 1000, 520, choice)}</div>'
         f'<div class="narrow">{chart.svg(study, 380, 380, choice)}</div>'
-        f'<div class="legend">{legend}</div>'
+        f"{_legend(study)}"
     )
+
+
+def _legend(study: Study) -> str:
+    techniques = list(dict.fromkeys(r.technique for r in study.records))
+    legend = "".join(
+        f'<span><svg viewBox="-8 -8 16 16"><path d="{marker_path(i, 0, 0)}" fill="{COLORS[i % len(COLORS)]}"/></svg>'
+        f"{_text(t)}</span>"
+        for i, t in enumerate(techniques)
+    )
+    return f'<div class="legend">{legend}</div>'
 
 
 def _figures(study: Study, choice: Choice | None) -> str:
     chosen = (choice.technique, choice.knobs) if choice is not None else None
-    threads, cpu = study.machine["threads"], study.machine["cpu"]
+    threads, cpu, unit = study.machine["threads"], study.machine["cpu"], study.cost_unit()
     return (
         '<h2 id="figures">Figures</h2>'
-        f"<p>Cheapest first; ★ is on the front. <b>ms</b>: median of a frame on {_text(threads)} threads of "
-        f"{_text(cpu)}, preparation included. Counters (taps, rays, bytes) carry to other machines; times do not, and "
+        f"<p>Cheapest first; ★ is on the front. <b>{unit.short}</b>: {unit.long}, median, on {_text(threads)} threads "
+        f"of {_text(cpu)}, preparation included. Counters (taps, rays, bytes) carry to other machines; times do not: "
         "<b>ranks may differ on a GPU</b>.</p>"
         f'<div class="scroll">{html_table(study, chosen, "cost")}</div>'
         "<h3>Where errors come from</h3><p>Each is the worst over the cases. <b>Bias</b> stays whatever the seed, "
@@ -156,13 +163,36 @@ def _figures(study: Study, choice: Choice | None) -> str:
     )
 
 
-def _pictures(strips: list[CaseStrip]) -> str:
+def _cases(study: Study, choice: Choice | None) -> str:
+    """The error over the cases, and every figure case by case, of the settings whose pictures are shown."""
+    if len(study.cases) < 2:
+        return ""
+    settings = study.few()
+    if choice is not None and (choice.technique, choice.knobs) not in settings:
+        settings.append((choice.technique, choice.knobs))
+    out = [
+        '<h2 id="cases">Case by case</h2>',
+        "<p>Where a technique holds, and where it breaks. Hollow marks are further settings of the same technique.</p>",
+        f'<div class="wide">{chart.cases_svg(study, settings, 1000)}</div>',
+        f'<div class="narrow">{chart.cases_svg(study, settings, 380)}</div>',
+        _legend(study),
+    ]
+    for title, (head, *rows) in cases_table(study, settings):
+        heads = "".join(f"<th>{_text(name)}</th>" for name in head)
+        body = "".join("<tr>" + "".join(f"<td>{_text(cell)}</td>" for cell in row) + "</tr>" for row in rows)
+        out.append(f'<h3>{_text(title)}</h3><div class="scroll"><table class="shadelab-table cases"><tr>{heads}</tr>')
+        out.append(f"{body}</table></div>")
+    return "".join(out)
+
+
+def _pictures(study: Study, strips: list[CaseStrip]) -> str:
     if not strips:
         return ""
+    low, high = (study.metric.get(k, default) for k, default in (("low", "too dark"), ("high", "too bright")))
     out = [
         '<h2 id="pictures">Pictures, and where the error sits</h2>',
-        "<p>Each technique's most accurate setting, and the choice. Difference maps are signed: "
-        '<span class="scale"></span> from too dark to too bright, paler outside the mask. Pictures here are '
+        "<p>The most accurate setting of each technique and the choice, or all if few. Difference maps are signed: "
+        f'<span class="scale"></span> from {_text(low)} to {_text(high)}, paler outside the mask. Pictures here are '
         "compressed; each is a link to its file in full, and EXR files with the linear values lie beside.</p>",
     ]
     for strip in strips:
@@ -222,17 +252,24 @@ def _measured(study: Study) -> str:
         f"<tr><td>{_text(c.name)}</td><td>{c.mask_share:.1%}</td><td>{_text(_reference(c))}</td></tr>"
         for c in study.cases
     )
+    element = s.get("element", "pixel")
     size = " × ".join(str(n) for n in s["size"])
-    return (
-        '<h2 id="measured">How it was measured</h2>'
-        f"<p>At {size} pixels, seed {_text(s['seed'])}. After one run that is not counted, all settings of a case "
-        f"are timed in turn, up to {s['rounds']} rounds in changing order; a setting that has used {s['patience']:g} s "
-        "is left alone after three. Time is the median with its interval between order statistics (95 % from six "
-        "rounds on).</p><p>Errors are taken against two independent halves A and B of the reference: the mean of "
+    size = f"{size} pixels" if element == "pixel" else f"{size} {element}s in each case"
+    noisy = (
+        "<p>Errors are taken against two independent halves A and B of the reference: the mean of "
         "(x − A)(x − B) is the squared error free of the reference's noise. The reference is refined until its own "
         f"error is {s['fraction']:g} of the smallest error that it judges, or its {s['reference_seconds']:g} s run "
-        "out. Intervals of errors are a bootstrap over tiles of the picture; two settings are compared on the same "
-        "draws. A bound is kept only if the upper end of the interval keeps it, in the worst case.</p>"
+        "out. "
+        if any(c.reference_samples for c in study.cases)
+        else "<p>References are exact. "
+    )
+    return (
+        '<h2 id="measured">How it was measured</h2>'
+        f"<p>At {size}, seed {_text(s['seed'])}. After one run that is not counted, all settings of a case "
+        f"are timed in turn, up to {s['rounds']} rounds in changing order; a setting that has used {s['patience']:g} s "
+        "is left alone after three. Time is the median with its interval between order statistics (95 % from six "
+        f"rounds on).</p>{noisy}Intervals of errors are a bootstrap over tiles of the picture, on draws common to "
+        "all settings. A bound is kept only if the upper end of the interval keeps it, in the worst case.</p>"
         '<div class="scroll"><table class="plain"><tr><th>case</th><th>mask</th><th>reference</th></tr>'
         f"{rows}</table></div>"
     )

@@ -48,6 +48,8 @@ class Metric:
         must be linear in the reference, since two halves of it enter one by one.
     aggregate : {"rms", "mean", "max"}
         Root of the mean square, mean magnitude, or largest magnitude over the mask.
+    signs : (str, str)
+        What a negative and a positive residual mean.
     """
 
     name: str
@@ -55,6 +57,7 @@ class Metric:
     unit: str = ""
     about: str = ""
     aggregate: Literal["rms", "mean", "max"] = "rms"
+    signs: tuple[str, str] = ("too dark", "too bright")
 
 
 @dataclass(frozen=True)
@@ -242,6 +245,9 @@ class Question:
         Whether errors can be split by cause; False where what is judged is no answer but a price.
     max_error : float
         The bound that the command line asks for unless told otherwise.
+    element : str
+        What an answer is made of. "pixel": it is a picture, and its time is that of a frame. Anything else ("ray"):
+        times are shown in nanoseconds an element; answers may still be laid out as pictures.
     """
 
     name: str
@@ -260,6 +266,7 @@ class Question:
     about: str = ""
     causes: bool = True
     max_error: float = 0.02
+    element: str = "pixel"
 
     def __post_init__(self) -> None:
         if isinstance(self.reference, MonteCarlo) and self.metric.aggregate != "rms":

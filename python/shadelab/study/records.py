@@ -110,6 +110,7 @@ class CaseRecord:
     plan: str = ""
     plan_html: str = ""
     left_out: tuple[str, ...] = ()
+    elements: int = 0
 
     @property
     def name(self) -> str:

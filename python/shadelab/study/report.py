@@ -74,12 +74,8 @@ def _choice(study: Study, max_error: float | None, budget_ms: float | None) -> t
 
 
 def shown(study: Study, choice: Choice | None) -> list[tuple[str, dict[str, Any]]]:
-    """The settings whose pictures are shown: the choice, and each technique's most accurate one."""
-    best: dict[str, tuple[str, dict[str, Any]]] = {}
-    order = list(dict.fromkeys(r.technique for r in study.records))
-    for s in sorted(study.summaries(), key=lambda s: s.error.value if s.error.known else np.inf):
-        best.setdefault(s.technique, (s.technique, s.knobs))
-    settings = [best[t] for t in order if t in best]
+    """The settings whose pictures are shown: each technique's most accurate one (few of other elements all), the choice."""
+    settings = study.best() if study.settings.get("element", "pixel") == "pixel" else study.few()
     if choice is not None and (choice.technique, choice.knobs) not in settings:
         at = next(i for i, s in enumerate(settings) if s[0] == choice.technique)
         settings.insert(at, (choice.technique, choice.knobs))
@@ -117,18 +113,13 @@ def _strip(
     reference, mask = made["reference"], made["mask"]
     keep_values(reference, "reference")
     picture = made["display"](reference)
-    outline = picture.copy()
-    outline[mask] = (outline[mask] * 0.4 + np.array([0, 158, 115]) * 0.6).astype(np.uint8)
-    about = f"the mask covers {case.mask_share:.1%} of the picture"
-    rows: list[tuple[str, tuple[Picture, ...]]] = [
-        (
-            "reference",
-            (
-                keep(picture, "reference", "reference", f"{case.name}: reference"),
-                keep(outline, "mask", f"mask (green): {about}", f"{case.name}: mask"),
-            ),
-        )
-    ]
+    first = [keep(picture, "reference", "reference", f"{case.name}: reference")]
+    if not mask.all():
+        outline = picture.copy()
+        outline[mask] = (outline[mask] * 0.4 + np.array([0, 158, 115]) * 0.6).astype(np.uint8)
+        about = f"the mask covers {case.mask_share:.1%} of the picture"
+        first.append(keep(outline, "mask", f"mask (green): {about}", f"{case.name}: mask"))
+    rows: list[tuple[str, tuple[Picture, ...]]] = [("reference", tuple(first))]
     # One scale for all maps of a case, so that they compare: nearly the largest error under the mask.
     residuals = {s: _flat(made["residual"](v)) for s, v in made["values"].items()}
     magnitudes = [np.abs(r[mask]) for r in residuals.values() if mask.any()]

@@ -8,7 +8,7 @@ import math
 from collections.abc import Callable, Iterable, Mapping
 from dataclasses import dataclass, field, replace
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -24,6 +24,20 @@ __all__ = ["SCHEMA", "Study"]
 
 SCHEMA = 1
 """Version of the figures' layout in JSON."""
+
+FEW = 8
+"""As many settings are shown case by case; of more, each technique's most accurate."""
+
+
+class CostUnit(NamedTuple):
+    """How a study shows times."""
+
+    per_ms: float
+    """Times in milliseconds times this are in the unit."""
+    short: str
+    """A column's head: "ms"."""
+    long: str
+    """An axis' label: "milliseconds a frame"."""
 
 
 @dataclass(frozen=True)
@@ -230,6 +244,26 @@ class Study:
             worst.external,
         )
 
+    def cost_unit(self) -> CostUnit:
+        """How times are shown: milliseconds a frame, or nanoseconds an element where answers are no pictures."""
+        element, counts = self.settings.get("element", "pixel"), {c.elements for c in self.cases}
+        if element == "pixel" or len(counts) != 1 or 0 in counts:
+            return CostUnit(1.0, "ms", "milliseconds a frame")
+        return CostUnit(1e6 / counts.pop(), f"ns/{element}", f"nanoseconds a {element}")
+
+    def best(self) -> list[tuple[str, dict[str, Any]]]:
+        """Each technique's most accurate setting, in the order of the techniques."""
+        order = list(dict.fromkeys(r.technique for r in self.records))
+        found: dict[str, dict[str, Any]] = {}
+        for s in sorted(self.summaries(), key=lambda s: s.error.value if s.error.known else math.inf):
+            found.setdefault(s.technique, s.knobs)
+        return [(t, found[t]) for t in order]
+
+    def few(self) -> list[tuple[str, dict[str, Any]]]:
+        """All settings where there are few, else each technique's most accurate one."""
+        settings = {r.setting: (r.technique, r.knobs) for r in self.records}
+        return list(settings.values()) if len(settings) <= FEW else self.best()
+
     # What one looks at ------------------------------------------------------------------------------------------
 
     def table(self, scene: str | None = None, view: str | None = None) -> str:
@@ -237,6 +271,12 @@ class Study:
         from .tables import text_table
 
         return text_table(self.of(scene, view) if scene is not None or view is not None else self)
+
+    def by_case(self) -> str:
+        """Error, figures beside and time, case by case, as text: of all settings, or the best of each technique."""
+        from .tables import case_text
+
+        return case_text(self)
 
     def __str__(self) -> str:
         return self.table()

@@ -1,8 +1,9 @@
 """The stability table: every kernel at the extremes of its domain, against an oracle.
 
-A chapter's extremes stand in `study/extremes/<chapter>.py` (and `<chapter>_<part>.py`). Each measures, in float32 and in
-float64, the largest error seen against a higher precision (mpmath, exact rationals, or float64 for float32), and counts
-NaN and infinity where none belongs. `claim` is what the docstring promises on that domain; `tests/extremes` holds it.
+A chapter's extremes stand in `study/extremes/<chapter>.py`, and in `<chapter>_<part>.py`. Each measures, in float32 and
+in float64, the largest error seen against a higher precision (mpmath, exact rationals, or float64 for float32), and
+counts NaN and infinity where none belongs. `claim` is what the docstring promises on that domain; `tests/extremes`
+holds it.
 """
 
 from __future__ import annotations

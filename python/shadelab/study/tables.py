@@ -3,14 +3,15 @@
 from __future__ import annotations
 
 import html
+from collections.abc import Sequence
 from typing import TYPE_CHECKING, Any
 
-from .records import Summary, figure_text, setting_text
+from .records import Record, Summary, figure_text, setting_text
 
 if TYPE_CHECKING:
     from .results import Study
 
-__all__ = ["STYLE", "counter_text", "html_table", "text_table"]
+__all__ = ["STYLE", "case_text", "cases_table", "counter_text", "html_table", "text_table"]
 
 
 def counter_text(value: float) -> str:
@@ -36,6 +37,7 @@ def _rows(study: Study, part: str = "") -> tuple[list[str], list[tuple[Summary, 
     also, counters = _columns(study)
     front = {s.setting for s in study.front()}
     many = len(study.cases) > 1
+    unit = study.cost_unit()
     heads = _chosen(
         part,
         ["error", "95 %"],
@@ -43,7 +45,7 @@ def _rows(study: Study, part: str = "") -> tuple[list[str], list[tuple[Summary, 
         ["least"] if many else [],
         ["bias", "noise", "precision", "whole frame"],
         also,
-        ["ms", "± MAD", "prepare"],
+        [unit.short, "± MAD", "prepare"],
         counters,
     )
     rows = []
@@ -58,7 +60,7 @@ def _rows(study: Study, part: str = "") -> tuple[list[str], list[tuple[Summary, 
             [figure_text(s.best_error)] if many else [],
             [figure_text(v) for v in (s.bias, s.noise, s.precision, s.frame_error)],
             [figure_text(s.also.get(k)) for k in also],
-            [figure_text(v) for v in (s.ms.value, s.spread, s.prepare_ms)],
+            [figure_text(v * unit.per_ms) for v in (s.ms.value, s.spread, s.prepare_ms)],
             [counter_text(s.counters[k]) if k in s.counters else "–" for k in counters],
         )
         rows.append((s, s.setting in front, [s.setting, *cells]))
@@ -89,8 +91,8 @@ def _legend(study: Study) -> list[str]:
     unit = f" ({study.metric['unit']})" if study.metric["unit"] else ""
     return [
         f"error: {study.metric['name']}{unit}, over: {study.mask['name']}; {worst}",
-        f"ms: median of a frame, preparation included, on {m['threads']} threads of {m['cpu']} ({m['simd']}); "
-        "ranks may differ on a GPU",
+        f"{study.cost_unit().short}: median, preparation included, on {m['threads']} threads of {m['cpu']} "
+        f"({m['simd']}); ranks may differ on a GPU",
     ]
 
 
@@ -109,6 +111,46 @@ def text_table(study: Study) -> str:
     title = f"{study.question}: {len(rows)} settings, {sum(on for _, on, _ in rows)} on the front (*)"
     body = [row(cells, "*" if on else " ") for _, on, cells in rows]
     return "\n".join([title, head, "-" * len(head), *body, *_legend(study)])
+
+
+def cases_table(study: Study, settings: Sequence[tuple[str, dict[str, Any]]]) -> list[tuple[str, list[list[str]]]]:
+    """Each figure's title, and its table: a row of settings, then a row for each case with its name before."""
+    found = {(r.case, r.setting): r for r in study.records}
+    names = [setting_text(*s) for s in settings]
+    also, _ = _columns(study)
+    unit = study.cost_unit()
+    tables = []
+    for title in ["error", *also, unit.short]:
+        rows = [["", *names]]
+        for case in study.cases:
+            records = [found.get((case.key, name)) for name in names]
+            rows.append([case.name, *(_figure(r, title, also, unit.per_ms) for r in records)])
+        tables.append((title, rows))
+    return tables
+
+
+def _figure(record: Record | None, title: str, also: list[str], per_ms: float) -> str:
+    if record is None:
+        return "–"
+    if title in also:
+        return figure_text(record.also.get(title))
+    return figure_text(record.error.value if title == "error" else record.ms.value * per_ms)
+
+
+def case_text(study: Study) -> str:
+    """`cases_table` as text."""
+    out = []
+    for title, rows in cases_table(study, study.few()):
+        rows[0][0] = title
+        widths = [max(len(row[i]) for row in rows) for i in range(len(rows[0]))]
+        lines = [
+            "  ".join(
+                c.rjust(w) if i else c.ljust(w) for i, (c, w) in enumerate(zip(row, widths, strict=True))
+            ).rstrip()
+            for row in rows
+        ]
+        out.append("\n".join([lines[0], "-" * len(lines[0]), *lines[1:]]))
+    return "\n\n".join(out)
 
 
 STYLE = """
