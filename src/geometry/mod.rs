@@ -7,6 +7,8 @@
 //! - [`point_in_polygon`], [`signed_area`], [`sort_by_angle`]: polygons in the plane
 //! - [`line_line`], [`segment_segment`]: where two lines, or segments, come nearest
 //! - [`ray_plane`], [`ray_aabb`], [`ray_obb`]: a ray against a plane, an axis-aligned and an oriented box
+//! - [`ray_implicit`]: a ray against an algebraic surface
+//! - [`octahedral`]: unit vectors in two numbers
 //! - [`ray_polygon`]: a ray against a flat polygon, convex or not
 //! - [`ray_sphere`]: a ray against a sphere: robust, quadratic, geometric
 //! - [`ray_triangle`]: a ray against a triangle: watertight, Möller-Trumbore, plane
@@ -20,7 +22,9 @@
 pub mod barycentric;
 pub mod closest_point_triangle;
 pub mod line_line;
+pub mod octahedral;
 pub mod ray_aabb;
+pub mod ray_implicit;
 pub mod ray_obb;
 pub mod ray_plane;
 pub mod perspective_barycentric;

@@ -1,9 +1,11 @@
 """Rays, lines and points against primitives; overlap tests; frusta; clipping."""
 
-from . import clip, frustum, lines, overlap, points, polygons, ray_boxes, rays
+from . import clip, frustum, implicit, lines, octahedral, overlap, points, polygons, ray_boxes, rays
 from .clip import *  # noqa: F403
 from .frustum import *  # noqa: F403
+from .implicit import *  # noqa: F403
 from .lines import *  # noqa: F403
+from .octahedral import *  # noqa: F403
 from .overlap import *  # noqa: F403
 from .points import *  # noqa: F403
 from .polygons import *  # noqa: F403
@@ -13,7 +15,9 @@ from .rays import *  # noqa: F403
 __all__: list[str] = []
 __all__ += clip.__all__
 __all__ += frustum.__all__
+__all__ += implicit.__all__
 __all__ += lines.__all__
+__all__ += octahedral.__all__
 __all__ += overlap.__all__
 __all__ += points.__all__
 __all__ += polygons.__all__

@@ -3,7 +3,9 @@
 mod clip;
 mod frustum;
 mod overlap;
+mod implicit;
 mod lines;
+mod octahedral;
 mod points;
 mod polygons;
 mod ray_boxes;
@@ -30,9 +32,19 @@ pub mod geometry {
     #[pymodule_export]
     use super::frustum::frustum_sphere;
     #[pymodule_export]
+    use super::implicit::ray_implicit;
+    #[pymodule_export]
+    use super::implicit::ray_implicit_degree;
+    #[pymodule_export]
     use super::lines::line_line;
     #[pymodule_export]
     use super::lines::segment_segment;
+    #[pymodule_export]
+    use super::octahedral::octahedral_decode;
+    #[pymodule_export]
+    use super::octahedral::octahedral_encode;
+    #[pymodule_export]
+    use super::octahedral::octahedral_quantize;
     #[pymodule_export]
     use super::overlap::aabb_aabb;
     #[pymodule_export]
