@@ -66,11 +66,11 @@ def octahedral_encode(
     Examples
     --------
     >>> octahedral_encode([[0, 0, 1.0], [1, 1, 0], [0, 0.6, -0.8]])
-    array([[0. , 0. ],
-           [0.5, 0.5],
-           [1. , 0.57142857]])
-    >>> octahedral_encode([1, 1, 0.0], bits=8)
-    array([64, 64], dtype=int8)
+    array([[0.        , 0.        ],
+           [0.5       , 0.5       ],
+           [0.57142857, 1.        ]])
+    >>> octahedral_encode([0.6, 0, 0.8], bits=8)
+    array([54,  0], dtype=int8)
     """
     _arrays.choice("rounding", rounding, ("precise", "nearest"))
     given = {"directions": (directions, 3)}
