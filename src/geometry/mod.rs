@@ -18,6 +18,7 @@
 //!   [`polygon_aabb`], [`triangle_triangle`]: whether two things have a point in common; all decided exactly ([`predicate`])
 //! - [`frustum_planes`] of a projection; how [`frustum_aabb`], [`frustum_obb`], [`frustum_sphere`] lie to them: conservative
 //! - [`clip_segment`], [`clip_polygon`], [`clip_homogeneous`]: what of things lies within a window
+//! - [`bounding_sphere`], [`bounding_aabb`], [`bounding_obb`], [`bounding_kdop`]: volumes around points, none excluded
 
 pub mod barycentric;
 pub mod closest_point_triangle;
@@ -55,3 +56,7 @@ pub mod clip_polygon;
 pub mod clip_homogeneous;
 pub mod signed_area;
 pub mod sort_by_angle;
+pub mod bounding_aabb;
+pub mod bounding_sphere;
+pub mod bounding_obb;
+pub mod bounding_kdop;

@@ -1,6 +1,7 @@
-"""Rays, lines and points against primitives; overlap tests; frusta; clipping."""
+"""Rays, lines and points against primitives; overlap tests; frusta; clipping; bounds."""
 
-from . import clip, frustum, implicit, lines, octahedral, overlap, points, polygons, ray_boxes, rays
+from . import bounds, clip, frustum, implicit, lines, octahedral, overlap, points, polygons, ray_boxes, rays
+from .bounds import *  # noqa: F403
 from .clip import *  # noqa: F403
 from .frustum import *  # noqa: F403
 from .implicit import *  # noqa: F403
@@ -13,6 +14,7 @@ from .ray_boxes import *  # noqa: F403
 from .rays import *  # noqa: F403
 
 __all__: list[str] = []
+__all__ += bounds.__all__
 __all__ += clip.__all__
 __all__ += frustum.__all__
 __all__ += implicit.__all__

@@ -1,5 +1,6 @@
 //! Bindings of `geometry`, a file for each of its faces.
 
+mod bounds;
 mod clip;
 mod frustum;
 mod overlap;
@@ -15,6 +16,16 @@ use pyo3::prelude::*;
 
 #[pymodule]
 pub mod geometry {
+    #[pymodule_export]
+    use super::bounds::bounding_aabb;
+    #[pymodule_export]
+    use super::bounds::bounding_kdop;
+    #[pymodule_export]
+    use super::bounds::bounding_obb;
+    #[pymodule_export]
+    use super::bounds::bounding_sphere;
+    #[pymodule_export]
+    use super::bounds::kdop_directions;
     #[pymodule_export]
     use super::clip::clip_homogeneous;
     #[pymodule_export]
