@@ -10,6 +10,7 @@ from .. import _arrays
 from .._kernels import accel as _kernels
 from ._rays import Progress
 from ._structure import Structure
+from .moving import Movable
 from .points import PointQueries
 
 __all__ = ["BVH"]
@@ -18,7 +19,7 @@ __all__ = ["BVH"]
 Method = Literal["sah", "median", "lbvh"]
 
 
-class BVH(PointQueries, Structure):
+class BVH(PointQueries, Movable, Structure):
     """A bounding volume hierarchy over triangles: nodes of eight boxes, leaves of blocks of four triangles.
 
     Parameters

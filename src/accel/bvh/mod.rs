@@ -12,6 +12,10 @@ mod packet;
 mod single;
 mod stats;
 mod stream;
+#[cfg_attr(not(feature = "python"), allow(dead_code))] // as above
+pub(crate) mod overlap;
+#[cfg_attr(not(feature = "python"), allow(dead_code))] // as above
+mod topology;
 mod walk;
 #[cfg_attr(not(feature = "python"), allow(dead_code))] // as above
 pub(crate) mod winding;

@@ -1,6 +1,7 @@
 //! Bindings of `accel`: bvh, uniform_grid, octree, kd_tree, bsp_tree, brute_force, morton, offset_ray.
 
 mod morton;
+mod moving;
 mod points;
 mod cells;
 mod rays;
@@ -18,6 +19,8 @@ pub mod accel {
     use super::cells::{bsp_tree, kd_tree, octree, uniform_grid};
     #[pymodule_export]
     use super::morton::{morton_decode, morton_encode, radix_tree};
+    #[pymodule_export]
+    use super::moving::{from_bytes, overlap, refit, to_bytes};
     #[pymodule_export]
     use super::points::{Moments, Pseudonormals, closest_point, winding_number};
     use super::rays::{HitArrays, RayArrays};
