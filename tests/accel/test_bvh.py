@@ -199,6 +199,20 @@ def test_trees_do_not_depend_on_threads(method):
     assert all(np.array_equal(a, b) for a, b in zip(found[0][1], found[1][1], strict=True))
 
 
+@pytest.mark.parametrize("shape", [(40, 33), (3, 64), (7, 35), (2, 9, 40), (50, 4)])
+def test_a_picture_has_the_hits_of_a_list(shape):
+    """Whatever the order in which its rays are traced."""
+    rng = np.random.default_rng(14)
+    p, f = soup(rng, 400, np.float32)
+    o, d = rays_of("coherent", rng, 4096)
+    n = int(np.prod(shape))
+    o, d = o[:n].reshape(*shape, 3), d[:n].reshape(*shape, 3)
+    bvh = sl.accel.BVH(p, f)
+    hit, listed = bvh.closest_hit(o, d), bvh.closest_hit(o.reshape(-1, 3), d.reshape(-1, 3))
+    assert hit.t.shape == shape and same_bits([x.reshape(-1) for x in hit[:4]], listed)
+    assert (bvh.any_hit(o, d) == (hit.face >= 0)).all()
+
+
 def test_unknown_methods_are_named():
     with pytest.raises(ValueError, match="method: expected one of"):
         sl.accel.BVH(np.eye(3), [[0, 1, 2]], "best")

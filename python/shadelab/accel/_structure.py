@@ -155,7 +155,8 @@ class Structure:
         """
         shape, rays = self._rays(origins, directions, t_min, t_max, ignore_face)
         hit = hit_arrays(shape, self.dtype, normals, out)
-        _kernels.closest_hit(self._tree, rays, flat(hit), _arrays.progress_callback(progress, "closest_hit"))
+        callback = _arrays.progress_callback(progress, "closest_hit")
+        _kernels.closest_hit(self._tree, rays, _width(shape), flat(hit), callback)
         if hit.normal is not None:
             _kernels.normals(self._positions, self._faces, hit.face.reshape(-1), hit.normal.reshape(-1, 3))
         return hit
@@ -192,7 +193,8 @@ class Structure:
         """
         shape, rays = self._rays(origins, directions, t_min, t_max, ignore_face)
         result = _arrays.output("out", out, shape, np.bool_)
-        _kernels.any_hit(self._tree, rays, result.reshape(-1), _arrays.progress_callback(progress, "any_hit"))
+        callback = _arrays.progress_callback(progress, "any_hit")
+        _kernels.any_hit(self._tree, rays, _width(shape), result.reshape(-1), callback)
         return result
 
     def all_hits(
@@ -274,3 +276,8 @@ class Structure:
 
     def _rays(self, *rays: Any) -> tuple[tuple[int, ...], list[NDArray[Any]]]:
         return ray_arrays(self.dtype, self._faces.shape[0], *rays)
+
+
+def _width(shape: tuple[int, ...]) -> int:
+    """The width of the pictures whose rays a batch of this shape may be; 0 for a list of rays."""
+    return shape[-1] if len(shape) > 1 else 0

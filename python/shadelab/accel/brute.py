@@ -58,7 +58,7 @@ def brute_force(
     shape, rays = ray_arrays(p.dtype, f.shape[0], origins, directions, t_min, t_max, ignore_face)
     hit = hit_arrays(shape, p.dtype, False, None)
     callback = _arrays.progress_callback(progress, "brute_force")
-    _kernels.closest_hit(_kernels.brute_force(p, f), rays, flat(hit), callback)
+    _kernels.closest_hit(_kernels.brute_force(p, f), rays, 0, flat(hit), callback)
     return hit
 
 

@@ -61,13 +61,14 @@ pub mod accel {
         py: Python<'_>,
         structure: &Bound<'_, PyAny>,
         rays: [Bound<'_, PyAny>; 5],
+        width: usize,
         out: [Bound<'_, PyAny>; 4],
         progress: Option<Py<PyAny>>,
     ) -> PyResult<()> {
         real!(&rays[0], T => {
             let (structure, rays) = (queries::<T>(structure)?, RayArrays::<T>::of(&rays)?);
             let mut out = HitArrays::of(&out)?;
-            let (rays, found) = (rays.get()?, out.get()?);
+            let (rays, found) = (rays.picture(width)?, out.get()?);
             run(py, progress, |watch| structure.closest_hits(watch, &rays, found))
         })
     }
@@ -77,6 +78,7 @@ pub mod accel {
         py: Python<'_>,
         structure: &Bound<'_, PyAny>,
         rays: [Bound<'_, PyAny>; 5],
+        width: usize,
         out: &Bound<'_, PyAny>,
         progress: Option<Py<PyAny>>,
     ) -> PyResult<()> {
@@ -84,7 +86,7 @@ pub mod accel {
         let out = out.slice()?;
         real!(&rays[0], T => {
             let (structure, rays) = (queries::<T>(structure)?, RayArrays::<T>::of(&rays)?);
-            let rays = rays.get()?;
+            let rays = rays.picture(width)?;
             run(py, progress, |watch| structure.any_hits(watch, &rays, out))
         })
     }

@@ -27,7 +27,12 @@ impl<'py, T: Real + Element> RayArrays<'py, T> {
         })
     }
     pub fn get(&self) -> PyResult<Rays<'_, T>> {
+        self.picture(0)
+    }
+    /// The rays of a picture's pixels, row by row.
+    pub fn picture(&self, width: usize) -> PyResult<Rays<'_, T>> {
         Ok(Rays {
+            width,
             origins: self.origins.items()?,
             directions: self.directions.items()?,
             t_min: self.t_min.slice()?,
