@@ -74,7 +74,7 @@ def _choice(study: Study, max_error: float | None, budget_ms: float | None) -> t
 
 
 def shown(study: Study, choice: Choice | None) -> list[tuple[str, dict[str, Any]]]:
-    """The settings whose pictures are shown: each technique's most accurate one (few of other elements all), the choice."""
+    """The settings whose pictures are shown: each technique's best (few of other elements all), the choice."""
     settings = study.best() if study.settings.get("element", "pixel") == "pixel" else study.few()
     if choice is not None and (choice.technique, choice.knobs) not in settings:
         at = next(i for i, s in enumerate(settings) if s[0] == choice.technique)

@@ -160,7 +160,6 @@ _TECHNIQUES = {
 
 def question() -> Question:
     """The question, ready to be run."""
-
     return Question(
         "ray triangle",
         _SCENES,
