@@ -171,7 +171,7 @@ def question() -> Question:
         compose=lambda inputs, t: _rays.answer(t),
         also=_rays.also,
         display=_rays.display,
-        size=(384, 192),
+        size=(320, 192),
         about=" ".join(_ABOUT.split()),
         element="ray",
         max_error=1e-5,
