@@ -1,7 +1,7 @@
 //! The point of a triangle nearest to a given point, its weights, and the feature that it lies on.
 //!
 //! It is the projection into the plane where that falls inside, else the nearest point of the edges. The four
-//! candidates are evaluated and the nearest taken, so slivers, lines and points, whose plane is uncertain or none, are
+//! candidates, all of them points of the triangle, are evaluated and the nearest is taken, so slivers, lines and points, whose plane is uncertain or none, are
 //! held by their edges: the distance stays right to rounding.
 //!
 //! C. Ericson, *Real-Time Collision Detection*, 2005, section 5.1.5 (whose regions these are, decided there by signs).
@@ -60,13 +60,25 @@ pub fn closest_point_triangle<T: Real>(p: Vec3<T>, [a, b, c]: [Vec3<T>; 3]) -> C
     if size > zero {
         let n = n * T::exp2i(-exponent(size));
         let area = |i: usize| dot(n, cross(corners[i], edges[i]));
-        let w = [area(1), area(2), area(0)];
+        // What rounds to the outside goes to the border: every candidate is a point of the triangle.
+        let w = [area(1), area(2), area(0)].map(|x| Lanes::max(x, zero));
         let sum = w[0] + w[1] + w[2];
-        if w[0] > zero && w[1] > zero && w[2] > zero && sum > zero {
-            let w = w.map(|x| x / sum);
-            let squared = (corners[0] + edges[0] * w[1] - edges[2] * w[2]).length_squared();
+        if sum > zero {
+            let mut w = w.map(|x| x / sum);
+            let foot = |w: [T; 3]| corners[0] + edges[0] * w[1] - edges[2] * w[2];
+            // Weights of a sliver are off by a rounding over its height: what that moves lies along its edges, and is
+            // taken back by projecting onto each.
+            for i in 0..3 {
+                let (j, squared) = ((i + 1) % 3, edges[i].length_squared());
+                if squared > zero {
+                    let s = Lanes::max(Lanes::min(-foot(w).dot(edges[i]) / squared, w[i]), -w[j]);
+                    (w[i], w[j]) = (w[i] - s, w[j] + s);
+                }
+            }
+            let squared = foot(w).length_squared();
             if squared < best {
-                (weights, region, best) = (w, 0, squared);
+                let [a, b, c] = w.map(|x| usize::from(x > zero));
+                (weights, region, best) = (w, [0, 4, 5, 1, 6, 3, 2, 0][a + 2 * b + 4 * c], squared);
             }
         }
     }

@@ -61,6 +61,9 @@ pub fn segment_segment<T: Real>([a, b]: [Vec3<T>; 2], [c, d]: [Vec3<T>; 2]) -> N
         let s = scaled(dot(n, cross(w, v)) / squared, -en);
         let t = scaled(dot(n, cross(w, u)) / squared, -en);
         if s >= zero && s <= one && t >= zero && t <= one {
+            // Almost parallel, both are uncertain along the segments: each in turn goes to the point across.
+            let t = nearest_on_segment(w - u * s, v);
+            let s = nearest_on_segment(-(w + v * t), u);
             offer(s, t);
         }
     }

@@ -68,6 +68,20 @@ def test_distance_at_slivers_and_sizes(dtype, thin, size, shift):
 
 
 @PRECISIONS
+@pytest.mark.parametrize("thin", [1e-4, 1e-8, 1e-12])
+def test_distance_of_points_as_near_as_the_sliver_is_thin(dtype, thin):
+    rng = np.random.default_rng(5)
+    a, u, v, p = rng.normal(size=(4, 80, 3))
+    # The short edge anywhere, so that the long ones meet at a needle's point or flank it.
+    b, c = a + u, a + rng.choice([0, 0.4, 1], (80, 1)) * u + thin * v
+    p = a + rng.choice([0, 0.3, 0.999999, 1], (80, 1)) * u + thin * p
+    given_ = [x.astype(dtype) for x in (p, a, b, c)]
+    found = sl.geometry.closest_point_triangle(*given_, full_output=True)
+    for i in range(80):
+        check(*(x[i] for x in given_), type(found)(*(x[i] for x in found)), dtype)
+
+
+@PRECISIONS
 def test_regions_tell_where_the_point_lies(dtype):
     rng = np.random.default_rng(2)
     p, a, b, c = (2 * rng.normal(size=(4, 2000, 3))).astype(dtype)

@@ -63,6 +63,18 @@ def test_least_distance_of_near_parallel_segments(dtype, tilt, shift):
 
 
 @PRECISIONS
+@pytest.mark.parametrize("tilt", [1e-3, 1e-7, 1e-10])
+def test_least_distance_of_segments_that_cross_almost_parallel(dtype, tilt):
+    rng = np.random.default_rng(6)
+    a, u, tiny = rng.normal(size=(3, 80, 3))
+    x, y, back = a + rng.uniform(0, 1, (80, 1)) * u, u + tilt * tiny, rng.uniform(0, 1, (80, 1))
+    segments = [x.astype(dtype) for x in (a, a + u, x - back * y, x + (1 - back) * y)]
+    pair = sl.geometry.segment_segment(*segments)
+    for i in range(80):
+        check([x[i] for x in segments], type(pair)(*(x[i] for x in pair)), dtype)
+
+
+@PRECISIONS
 @pytest.mark.parametrize("size", [1e-25, 1e-15, 1e15])
 def test_least_distance_at_any_size(dtype, size):
     segments = (size * np.random.default_rng(2).normal(size=(4, 60, 3))).astype(dtype)

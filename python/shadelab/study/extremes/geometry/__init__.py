@@ -1,5 +1,5 @@
 """Extremes of `geometry`, a file for each kind of test."""
 
-from . import spheres, triangles
+from . import boxes, nearest, polygons, spheres, triangles
 
-__all__ = ["spheres", "triangles"]
+__all__ = ["boxes", "nearest", "polygons", "spheres", "triangles"]
