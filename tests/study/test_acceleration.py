@@ -27,17 +27,17 @@ def counters(result, technique, view):
 @pytest.mark.parametrize("name", _acceleration_scenes.SCENES)
 def test_scenes_are_of_one_size_and_both_kinds_of_rays_meet_them(name):
     mesh = _acceleration_scenes.SCENES[name]()
-    assert 17_000 < len(mesh.faces) < 23_000
+    assert 5_000 < len(mesh.faces) < 7_000
     bvh = sl.accel.BVH(mesh.positions, mesh.faces)
     for view in _acceleration_scenes.RAYS:
         inputs = acceleration._setup(case_of(mesh, view))
         hit = bvh.closest_hit(inputs.origins, inputs.directions)
-        assert 0.05 < (hit.face >= 0).mean() <= 1, view
+        assert 0.03 < (hit.face >= 0).mean() <= 1, view
 
 
 def test_every_structure_is_measured_in_every_case(measured):
     settings = {(r.technique, *r.knobs.values()) for r in measured.records}
-    assert {t for t, *_ in settings} == {"BVH", "grid", "octree", "kd-tree", "BSP tree"} and len(settings) == 12
+    assert {t for t, *_ in settings} == {"BVH", "grid", "octree", "kd-tree", "BSP tree"} and len(settings) == 10
     assert len(measured.records) == 2 * len(settings)
     for r in measured.records:
         assert (
@@ -85,6 +85,6 @@ def test_a_scene_of_ones_own_is_taken_and_an_empty_one_refused():
     result = study.run("acceleration", scene, techniques=["grid"], **FAST)
     assert {r.scene for r in result.records} == {"your scene"}
     with pytest.raises(ValueError, match="at least one face in 'mine'"):
-        acceleration._setup(case_of(sl.scene.Scene([])))
+        acceleration._setup(case_of(sl.mesh.Mesh(np.zeros((3, 3)), np.zeros((0, 3), int))))
     with pytest.raises(TypeError, match="expected 'mine' to be a Mesh or a Scene"):
         acceleration._setup(case_of(7))

@@ -15,7 +15,7 @@ __all__ = ["RAYS", "SCENES"]
 
 Array = NDArray[Any]
 
-FACES = 20_000
+FACES = 6_000
 """About as many faces has every scene, so that builds compare."""
 
 
@@ -28,7 +28,7 @@ def uniform() -> Mesh:
     """Small triangles of one size, spread evenly over a cube."""
     rng = np.random.default_rng(1)
     centres = rng.uniform(-1, 1, (FACES, 1, 3))
-    return _soup(centres + 0.03 * rng.uniform(-1, 1, (FACES, 3, 3)))
+    return _soup(centres + 0.045 * rng.uniform(-1, 1, (FACES, 3, 3)))
 
 
 def clustered() -> Mesh:
@@ -36,7 +36,7 @@ def clustered() -> Mesh:
     rng = np.random.default_rng(2)
     middles = rng.uniform(-0.9, 0.9, (12, 3))[rng.integers(12, size=FACES)]
     centres = middles[:, None] + 0.06 * rng.normal(size=(FACES, 1, 3))
-    return _soup(centres + 0.006 * rng.uniform(-1, 1, (FACES, 3, 3)))
+    return _soup(centres + 0.03 * rng.uniform(-1, 1, (FACES, 3, 3)))
 
 
 def thin() -> Mesh:
@@ -59,7 +59,7 @@ def nested() -> Mesh:
 
 def stadium() -> Mesh:
     """A finely meshed torus, a hundredth of the scene in size, amid the steps of an arena."""
-    torus = mesh.torus(1.0, 0.4, 140, 64)
+    torus = mesh.torus(1.0, 0.4, 72, 36)
     parts = [(torus.positions * 0.01 + [0, 0.02, 0], torus.faces)]
     for i in range(12):
         # Rings of steps, squares of few and large triangles.
@@ -90,7 +90,7 @@ def _picture(positions: Array, size: tuple[int, int], rng: np.random.Generator) 
     extent = float(np.ptp(positions, axis=0).max())
     # So near that what is dense fills a part of the picture.
     spread = float(np.median(np.linalg.norm(positions - middle, axis=-1)))
-    eye = middle + np.array([0.4, 0.5, 0.77]) * max(3 * spread, 1e-3 * extent)
+    eye = middle + np.array([0.4, 0.5, 0.77]) * max(2.5 * spread, 1e-3 * extent)
     back = (eye - middle) / np.linalg.norm(eye - middle)
     right = np.cross([0, 1, 0], back)
     right /= np.linalg.norm(right)
