@@ -154,12 +154,20 @@ def _figures(study: Study, choice: Choice | None) -> str:
         f"<p>Cheapest first; ★ is on the front. <b>{unit.short}</b>: {unit.long}, median, on {_text(threads)} threads "
         f"of {_text(cpu)}, preparation included. Counters (taps, rays, bytes) carry to other machines; times do not: "
         "<b>ranks may differ on a GPU</b>.</p>"
-        f'<div class="scroll">{html_table(study, chosen, "cost")}</div>'
+        f'<div class="scroll">{html_table(study, chosen, "cost")}</div>{_causes(study, chosen)}'
+        '<p class="soft">All figures, setting by setting and case by case: <a href="figures.csv">figures.csv</a>, '
+        '<a href="figures.json">figures.json</a>; the front as a picture: <a href="front.png">front.png</a>.</p>'
+    )
+
+
+def _causes(study: Study, chosen: tuple[str, dict[str, object]] | None) -> str:
+    """Errors by cause, where any can be told."""
+    if all(v is None for r in study.records for v in (r.bias, r.noise, r.precision)) and not study.also:
+        return ""
+    return (
         "<h3>Where errors come from</h3><p>Each is the worst over the cases. <b>Bias</b> stays whatever the seed, "
         "<b>noise</b> changes with it, <b>precision</b> is float32 against the same technique in float64.</p>"
         f'<div class="scroll">{html_table(study, chosen, "cause")}</div>'
-        '<p class="soft">All figures, setting by setting and case by case: <a href="figures.csv">figures.csv</a>, '
-        '<a href="figures.json">figures.json</a>; the front as a picture: <a href="front.png">front.png</a>.</p>'
     )
 
 
