@@ -118,14 +118,14 @@ def _candidates() -> list[Candidate]:
             BVH,
             "A hierarchy of boxes, eight children a node: each triangle stands once, boxes may overlap. The structure "
             "of this library that is made for speed; the others are lessons.",
-            [{"method": m} for m in ("sah", "median", "lbvh")],
+            [{"method": m} for m in ("sah", "lbvh")],
         ),
         _candidate(
             "grid",
             UniformGrid,
             "Equal cells: no tree at all. Right where triangles are of one size and spread evenly; a dense object in a "
             "large scene falls into one cell.",
-            [{"cells_per_face": c} for c in (2.0, 8.0)],
+            [{"cells_per_face": 4.0}],
         ),
         _candidate(
             "octree",
