@@ -65,3 +65,9 @@ def test_nan_touches_no_other():
     a = [[0, 0, 0], [np.nan, 0, 0], [0, 0, 0]]
     got = geometry.sphere_triangle([0, 0, 1.0], [1, 1, np.inf], a, [1, 0, 0], [0, 1, 0])
     assert got.tolist() == [True, False, True]
+
+
+def test_the_nearest_point():
+    got = geometry.sphere_triangle([0.25, 0.25, 2.0], [1.9, 2.0], [0, 0, 0], [1, 0, 0], [0, 1, 0], full_output=True)
+    assert got.overlap.tolist() == [False, True]
+    assert np.allclose(got.point, [0.25, 0.25, 0]) and np.allclose(got.distance, 2)

@@ -93,7 +93,7 @@ def bounding_aabb(points: ArrayLike) -> BoundingBox:
 
     Notes
     -----
-    Exact. A set with NaN gives NaN, and touches no other. About 1 ns a point and thread.
+    Exact. A set with NaN gives NaN, and touches no other. About 5 ns a point.
 
     References
     ----------
@@ -116,7 +116,8 @@ def bounding_sphere(points: ArrayLike, method: Literal["minimal", "ritter"] = "m
     points : array_like, shape (..., N, 3)
         Sets of at least one point.
     method : {"minimal", "ritter"}
-        The smallest ball, or Ritter's of two passes, which is MEASURED larger.
+        The smallest ball, or Ritter's of two passes, which is 7 % larger on average,
+        up to 23 % (over sets of 20 to 1000 points).
 
     Returns
     -------
@@ -133,7 +134,8 @@ def bounding_sphere(points: ArrayLike, method: Literal["minimal", "ritter"] = "m
     out in the points' precision. The smallest ball's radius is right to 1e-12, and three rounding units of the
     precision and the centre's own rounding (that of the coordinates: far from the origin it may be much); duplicate,
     collinear, coplanar and cospherical points are fine. A set with NaN or infinity gives NaN, and touches no other.
-    COST.
+    30 to 50 ns a point,
+    either method.
 
     References
     ----------
@@ -179,7 +181,9 @@ def bounding_obb(points: ArrayLike, method: Literal["calipers", "dito", "pca"] =
     `abs((points - center) @ axes.T) <= half_extents` holds in the points' precision, and the box as `obb_obb` and
     `plane_obb` understand it, whose axes are not quite orthonormal, holds every point exactly. Flat sets get flat
     boxes but for this. A set with NaN or infinity gives NaN, and touches no other. A set is one task: Ctrl-C waits
-    for it. MEASURED.
+    for it. On 1000 normally distributed points dito's volume is 1.13 times that of calipers, pca's 1.30; on points
+    that fill a cube 1.00 and 2.81. Calipers' is from 0.81 to 1.04 times trimesh's (0.95 on average), which tries each
+    face of the hull. 50, 100 and 4000 ns a point for pca, dito, calipers.
 
     References
     ----------
@@ -221,8 +225,9 @@ def bounding_kdop(points: ArrayLike, k: Literal[6, 14, 18, 26] = 26) -> Bounding
 
     Notes
     -----
-    Heights are exact where their sums are, else rounded outwards: no point is excluded, neither exactly nor by its rounded sum. Two polytopes of one kind are
-    apart if some interval is. A set with NaN gives NaN, and touches no other. About 2 ns a point and direction.
+    Heights are exact where their sums are, else rounded outwards: no point is excluded, neither exactly nor by its
+    rounded sum. Two polytopes of one kind are apart if some interval is. A set with NaN gives NaN, and touches no
+    other. About 25 ns a point and direction.
 
     References
     ----------

@@ -121,7 +121,8 @@ def clip_segment(
     -----
     Whether anything is left is exact, by either method: a corner that is just touched leaves a point. The ends lie in
     the window to the bit, on the border where they were cut, and off the segment by at most 3 rounding units of the
-    largest coordinate. NaN or infinity, or `lower` above `upper`, leaves nothing. 30 to 80 ns.
+    largest coordinate. NaN or infinity, or `lower` above `upper`, leaves nothing. About 0.1 µs in the plane, 0.2 µs
+    in space.
 
     References
     ----------
@@ -180,7 +181,8 @@ def clip_polygon(polygon: ArrayLike, window: ArrayLike) -> ClippedPolygon:
     touches the window leaves a point or an edge. New corners are off their edge and their border by at most 4
     rounding units of the largest coordinate, and polygons that share an edge share its clipped ends to the bit. Where
     the window cuts a polygon that is not convex in parts, these stay joined by edges along the border, of no area.
-    NaN or infinity leaves nothing. About 20 ns for each corner and border.
+    NaN or infinity leaves nothing. A triangle in a
+    square takes about 1 µs.
 
     References
     ----------
@@ -256,7 +258,7 @@ def clip_homogeneous(
     Sides are exact, and what comes out satisfies `-w <= x, y, z <= w` (or `0 <= z <= w`) to the bit. Polygons that
     share an edge share its clipped ends. With all borders w comes out positive, but for a polygon through the eye
     itself (0, 0, 0, 0); with "near" alone it does for projections whose near is positive. Computed in
-    double precision, and rounded once. NaN or infinity leaves nothing. About 20 ns for each corner and border.
+    double precision, and rounded once. NaN or infinity leaves nothing. About 1 µs a triangle.
 
     References
     ----------

@@ -133,7 +133,7 @@ def frustum_aabb(
     (float32) or 2e-15 (float64) of a plane, times the magnitude of its coordinates, is neither. Nor are boxes outside
     that lie beside an edge of the frustum but behind no single plane: of boxes strewn around a frustum that do not
     show, 0.1 % of those with edges of up to a tenth of the far plane's height, 12 % of those with edges as long as
-    it. Planes from elsewhere serve as well, of whatever length. 20 to 40 ns.
+    it. Planes from elsewhere serve as well, of whatever length. About 0.1 µs.
 
     References
     ----------
@@ -195,7 +195,7 @@ def frustum_obb(
 
     Notes
     -----
-    Conservative as `frustum_aabb`, for the box as given, be its axes orthonormal or not. 30 to 60 ns.
+    Conservative as `frustum_aabb`, for the box as given, be its axes orthonormal or not. About 0.15 µs.
 
     References
     ----------
@@ -252,7 +252,7 @@ def frustum_sphere(
     Notes
     -----
     Conservative as `frustum_aabb`: balls beside an edge or a corner of the frustum that lie behind no single plane are
-    not called outside. 20 to 40 ns.
+    not called outside. About 0.1 µs.
 
     References
     ----------
