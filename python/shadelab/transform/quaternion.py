@@ -79,8 +79,8 @@ def quaternion_multiply(a: ArrayLike, b: ArrayLike) -> Floats:
 
     Notes
     -----
-    Each component errs by at most 2 rounding units of the product of the lengths, and so does the length of long chains
-    of products a little with each: `q / norm(q)` now and then.
+    Each component errs by at most 2 rounding units of the product of the lengths. Long chains drift from unit
+    length by as much with each product.
 
     References
     ----------
