@@ -1,11 +1,12 @@
 """Acceleration structures for ray queries, and the brute force that they must equal."""
 
-from . import brute, bvh, grid, morton, moving, offset, points, trees
+from . import brute, bvh, grid, instances, morton, moving, offset, points, trees
 from ._rays import AllHits, Hit
 from ._structure import Counts, Stats, Structure
 from .brute import *  # noqa: F403
 from .bvh import *  # noqa: F403
 from .grid import *  # noqa: F403
+from .instances import *  # noqa: F403
 from .morton import *  # noqa: F403
 from .moving import *  # noqa: F403
 from .offset import *  # noqa: F403
@@ -21,3 +22,4 @@ __all__ += offset.__all__
 __all__ += points.__all__
 __all__ += trees.__all__
 __all__ += moving.__all__
+__all__ += instances.__all__

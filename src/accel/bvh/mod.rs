@@ -15,6 +15,8 @@ mod stream;
 #[cfg_attr(not(feature = "python"), allow(dead_code))] // as above
 pub(crate) mod overlap;
 #[cfg_attr(not(feature = "python"), allow(dead_code))] // as above
+pub(crate) mod instances;
+#[cfg_attr(not(feature = "python"), allow(dead_code))] // as above
 mod topology;
 mod walk;
 #[cfg_attr(not(feature = "python"), allow(dead_code))] // as above

@@ -1,5 +1,6 @@
 //! Bindings of `accel`: bvh, uniform_grid, octree, kd_tree, bsp_tree, brute_force, morton, offset_ray.
 
+mod instances;
 mod morton;
 mod moving;
 mod points;
@@ -17,6 +18,8 @@ pub mod accel {
     use super::Tree;
     #[pymodule_export]
     use super::cells::{bsp_tree, kd_tree, octree, uniform_grid};
+    #[pymodule_export]
+    use super::instances::Instances;
     #[pymodule_export]
     use super::morton::{morton_decode, morton_encode, radix_tree};
     #[pymodule_export]

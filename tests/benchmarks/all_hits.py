@@ -1,0 +1,63 @@
+"""Every hit of each ray, beside Open3D's `list_intersections`: `python tests/benchmarks/all_hits.py [rays]`.
+
+One run, 2 threads, arrays in to arrays out, medians of interleaved repetitions; on a noisy machine only ratios count.
+"""
+
+import sys
+import time
+
+import numpy as np
+import open3d as o3d
+import shadelab as sl
+import trimesh
+
+REPEATS = 5
+
+
+def scenes():
+    yield "torus 16k", trimesh.creation.torus(1.0, 0.4, 90, 90)
+    rng = np.random.default_rng(0)
+    ball = trimesh.creation.icosphere(7)
+    crumpled = ball.vertices * rng.uniform(0.9, 1.0, (len(ball.vertices), 1))
+    yield "crumpled sphere 328k", trimesh.Trimesh(crumpled, ball.faces, process=False)
+    # Some forty layers: many hits a ray.
+    balls = [trimesh.creation.icosphere(4, radius=r) for r in np.linspace(0.5, 1.0, 20)]
+    yield "20 shells 102k", trimesh.util.concatenate(balls)
+
+
+def main(rays):
+    sl.set_threads(2)
+    rng = np.random.default_rng(1)
+    print(
+        f"{'scene':22} {'hits/ray':>8} {'ours ms':>9} {'float64':>9} {'Open3D ms':>10} {'ratio':>6} {'same count':>11}"
+    )
+    for name, mesh in scenes():
+        p, f = np.asarray(mesh.vertices, np.float32), np.asarray(mesh.faces, np.int32)
+        o = rng.normal(size=(rays, 3))
+        o = (2 * o / np.linalg.norm(o, axis=-1, keepdims=True)).astype(np.float32)
+        d = (rng.uniform(-0.8, 0.8, (rays, 3)) - o).astype(np.float32)
+        bvh, double = sl.accel.BVH(p, f), sl.accel.BVH(p.astype(float), f)
+        scene = o3d.t.geometry.RaycastingScene(nthreads=2)
+        scene.add_triangles(o3d.core.Tensor(p), o3d.core.Tensor(f.astype(np.uint32)))
+        packed, od, dd = np.concatenate([o, d], -1), o.astype(float), d.astype(float)
+        times = {"ours": [], "double": [], "open3d": []}
+        for _ in range(REPEATS):
+            start = time.perf_counter()
+            found = bvh.all_hits(o, d)
+            times["ours"].append(time.perf_counter() - start)
+            start = time.perf_counter()
+            double.all_hits(od, dd)
+            times["double"].append(time.perf_counter() - start)
+            start = time.perf_counter()
+            listed = scene.list_intersections(o3d.core.Tensor(packed))
+            theirs = {k: v.numpy() for k, v in listed.items()}
+            times["open3d"].append(time.perf_counter() - start)
+        ours, both, peer = (1e3 * float(np.median(times[k])) for k in ("ours", "double", "open3d"))
+        same = (np.diff(found.offsets) == np.diff(theirs["ray_splits"])).mean()
+        print(
+            f"{name:22} {len(found.t) / rays:8.2f} {ours:9.1f} {both:9.1f} {peer:10.1f} {peer / ours:6.1f} {same:11.5f}"
+        )
+
+
+if __name__ == "__main__":
+    main(int(float(sys.argv[1])) if len(sys.argv) > 1 else 250_000)
