@@ -25,7 +25,8 @@ impl Polygon {
         self.rows.extend(rows);
         self.rows.iter().all(|x| x.is_finite())
     }
-    pub fn len(&self) -> usize {
+    /// The number of corners.
+    pub fn corners(&self) -> usize {
         self.rows.len() / self.width
     }
     fn row(&self, i: usize) -> &[f64] {
@@ -33,7 +34,7 @@ impl Polygon {
     }
     /// Keeps what has no negative distance from a border. `mend` puts new corners onto it.
     pub fn clip(&mut self, distance: impl Fn(&[f64]) -> f64, mend: impl Fn(&mut [f64])) {
-        let n = self.len();
+        let n = self.corners();
         let mut out = std::mem::take(&mut self.spare);
         out.clear();
         if n > 0 {

@@ -30,15 +30,16 @@ fn above<N: Number>(p: &[Point], x: Point) -> N {
     predicate::dot(&normal::<N>(p), &predicate::between(p[0], x))
 }
 
-/// On which side of the line `a`-`b` a point lies, as seen from `c`: 1 on `c`'s side of the plane through all three.
+/// Whether a polygon winds around the line `a`-`b`, which meets none of its edges; `c` is any point beside the line.
 fn winds(p: &[Point], [a, b]: [Point; 2], c: Point) -> bool {
+    // Seen along the line: edges that cross the ray from it away from `c`, one way and the other. A corner on the plane of
+    // the line and `c` counts with those behind it, so that each edge crosses or does not.
+    let ahead = |x: Point| predicate::side(a, b, c, x) > 0.0;
     let mut turns = 0;
-    let half = |x: Point| c_side(a, b, c, x);
     for i in 0..p.len() {
         let (u, v) = (p[i], p[(i + 1) % p.len()]);
-        let (from, to) = (half(u), half(v));
+        let (from, to) = (ahead(u), ahead(v));
         if from != to {
-            // Across the plane, on which side of the line?
             let s = predicate::side(a, b, u, v);
             if from && s > 0.0 {
                 turns += 1;
@@ -48,11 +49,6 @@ fn winds(p: &[Point], [a, b]: [Point; 2], c: Point) -> bool {
         }
     }
     turns != 0
-}
-
-/// Strictly on one side of the plane of `a`, `b`, `c`; so each point has one of two sides.
-fn c_side(a: Point, b: Point, c: Point, x: Point) -> bool {
-    predicate::side(a, b, c, x) > 0.0
 }
 
 pub fn polygon_aabb(p: &[Point], [low, high]: [Point; 2]) -> Meeting {

@@ -46,7 +46,7 @@ fn write<T: Real>(polygon: &Polygon, out: &mut [T]) -> i32 {
         *out = T::of(x);
     }
     out[kept..].fill(T::NAN);
-    polygon.len() as i32
+    polygon.corners() as i32
 }
 
 /// `sizes`: dimension, corners, borders, slots. `given`: polygons of `corners` points, and windows of `borders` points or planes. `out`: corners in `slots`, NaN behind

@@ -11,31 +11,15 @@ from numpy.typing import NDArray
 
 from .... import geometry
 from ...stability import Measurement, extreme
+from ._rational import Vector, cross, dot, sub, vector
 
 Array = NDArray[Any]
-Vector = list[Fraction]
-
-
-def _rational(x: Array) -> Vector:
-    return [Fraction(float(v)) for v in x]
-
-
-def _minus(a: Vector, b: Vector) -> Vector:
-    return [x - y for x, y in zip(a, b, strict=True)]
-
-
-def _dot(a: Vector, b: Vector) -> Fraction:
-    return sum((x * y for x, y in zip(a, b, strict=True)), Fraction(0))
-
-
-def _cross(a: Vector, b: Vector) -> Vector:
-    return [a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]]
 
 
 def _apart(axes: Iterable[Vector], a: list[Vector], b: list[Vector]) -> bool:
     """Whether the shadows of two sets of corners are apart on some axis."""
     for n in axes:
-        p, q = [_dot(n, x) for x in a], [_dot(n, x) for x in b]
+        p, q = [dot(n, x) for x in a], [dot(n, x) for x in b]
         if max(p) < min(q) or max(q) < min(p):
             return True
     return False
@@ -53,13 +37,13 @@ def _turns(rng: np.random.Generator, n: int) -> Array:
 
 
 def _boxes_apart(a: tuple[Array, Array, Array], b: tuple[Array, Array, Array]) -> bool:
-    (ac, bc), edges = (_rational(a[0]), _rational(b[0])), [_rational(x) for x in [*a[1], *b[1]]]
-    half = _rational(np.concatenate([a[2], b[2]]))
-    between = _minus(bc, ac)
+    (ac, bc), edges = (vector(a[0]), vector(b[0])), [vector(x) for x in [*a[1], *b[1]]]
+    half = vector(np.concatenate([a[2], b[2]]))
+    between = sub(bc, ac)
     for i in range(6):
         for j in range(i + 1, 6):
-            n = _cross(edges[i], edges[j])
-            if abs(_dot(n, between)) > sum(h * abs(_dot(n, e)) for h, e in zip(half, edges, strict=True)):
+            n = cross(edges[i], edges[j])
+            if abs(dot(n, between)) > sum(h * abs(dot(n, e)) for h, e in zip(half, edges, strict=True)):
                 return True
     return False
 
@@ -104,11 +88,11 @@ def _flat(dtype: np.dtype[Any]) -> Measurement:
 
 def _triangles_meet(a: Array, b: Array) -> bool:
     """For triangles with area: the axes of their normals, of their edges' products, and of edges in a common plane."""
-    p, q = [_rational(x) for x in a], [_rational(x) for x in b]
-    ep, eq = ([_minus(t[(i + 1) % 3], t[i]) for i in range(3)] for t in (p, q))
-    normal = _cross(ep[0], ep[1])
-    axes = [normal, _cross(eq[0], eq[1]), *(_cross(u, v) for u in ep for v in eq)]
-    return not _apart([*axes, *(_cross(normal, e) for e in ep + eq)], p, q)
+    p, q = [vector(x) for x in a], [vector(x) for x in b]
+    ep, eq = ([sub(t[(i + 1) % 3], t[i]) for i in range(3)] for t in (p, q))
+    normal = cross(ep[0], ep[1])
+    axes = [normal, cross(eq[0], eq[1]), *(cross(u, v) for u in ep for v in eq)]
+    return not _apart([*axes, *(cross(normal, e) for e in ep + eq)], p, q)
 
 
 def _meeting(a: Array, b: Array) -> Measurement:
@@ -169,11 +153,11 @@ def _grazing(dtype: Any, shift: float, thick: float) -> Measurement:
     low, high, t = low.astype(dtype), high.astype(dtype), t.astype(dtype)
     expected = []
     for tri, lo, hi in zip(t, low, high, strict=True):
-        p = [_rational(x) for x in tri]
-        edges = [_minus(p[(i + 1) % 3], p[i]) for i in range(3)]
+        p = [vector(x) for x in tri]
+        edges = [sub(p[(i + 1) % 3], p[i]) for i in range(3)]
         unit = [[Fraction(int(i == k)) for i in range(3)] for k in range(3)]
-        box = [_rational(np.where([i & 1, i & 2, i & 4], hi, lo)) for i in range(8)]
-        axes = [*unit, _cross(edges[0], edges[1]), *(_cross(e, f) for e in unit for f in edges)]
+        box = [vector(np.where([i & 1, i & 2, i & 4], hi, lo)) for i in range(8)]
+        axes = [*unit, cross(edges[0], edges[1]), *(cross(e, f) for e in unit for f in edges)]
         expected.append(not _apart(axes, p, box))
     return _wrong(geometry.triangle_aabb(t[:, 0], t[:, 1], t[:, 2], low, high), expected)
 
@@ -202,8 +186,8 @@ def _balls(dtype: Any, size: float) -> Measurement:
     rb = (away - ra).astype(dtype)
     expected = []
     for p, r, q, s in zip(a, ra, b, rb, strict=True):
-        d = _minus(_rational(p), _rational(q))
-        expected.append(_dot(d, d) <= (Fraction(float(r)) + Fraction(float(s))) ** 2)
+        d = sub(vector(p), vector(q))
+        expected.append(dot(d, d) <= (Fraction(float(r)) + Fraction(float(s))) ** 2)
     return _wrong(geometry.sphere_sphere(a, ra, b, rb), expected)
 
 
@@ -231,11 +215,11 @@ def _pencil(dtype: np.dtype[Any]) -> Measurement:
     got = geometry.three_planes(a, b, c)
     error, strays = Fraction(0), 0
     for point, *planes in zip(got, a, b, c, strict=True):
-        rows = [_rational(p) for p in planes]
+        rows = [vector(p) for p in planes]
         x, y, z = ([r[i] for r in rows] for i in range(3))
         d = [-r[3] for r in rows]
-        det = _dot(x, _cross(y, z))
-        exact = [_dot(d, _cross(y, z)) / det, _dot(x, _cross(d, z)) / det, _dot(x, _cross(y, d)) / det]
+        det = dot(x, cross(y, z))
+        exact = [dot(d, cross(y, z)) / det, dot(x, cross(d, z)) / det, dot(x, cross(y, d)) / det]
         if not np.isfinite(point).all():
             strays += 1
             continue
@@ -244,8 +228,8 @@ def _pencil(dtype: np.dtype[Any]) -> Measurement:
 
 
 def _clip_points(matrix: Array, p: Array) -> Vector:
-    point = [*_rational(p), Fraction(1)]
-    return [_dot(_rational(row), point) for row in matrix]
+    point = [*vector(p), Fraction(1)]
+    return [dot(vector(row), point) for row in matrix]
 
 
 def _visible(dtype: Any, far: float, shift: float) -> Measurement:
@@ -358,7 +342,7 @@ def _corner_segments(dtype: np.dtype[Any]) -> Measurement:
     expected = []
     for a, b, lo, hi in zip(p, q, low, high, strict=True):
         first, last = Fraction(0), Fraction(1)
-        for x, y, u, v in zip(*(_rational(w) for w in (a, b, lo, hi)), strict=True):
+        for x, y, u, v in zip(*(vector(w) for w in (a, b, lo, hi)), strict=True):
             s, t = sorted([(u - x) / (y - x), (v - x) / (y - x)])
             first, last = max(first, s), min(last, t)
         expected.append(first <= last)
