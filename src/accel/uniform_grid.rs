@@ -134,7 +134,7 @@ impl<T: Real> UniformGrid<T> {
             let mut references = 0;
             for (i, b) in boxes.iter().enumerate() {
                 references += cells_in(&cells.range(b));
-                if references > most || (i % 4096 == 0 && stop.load(Ordering::Relaxed)) {
+                if references > most || (i.is_multiple_of(4096) && stop.load(Ordering::Relaxed)) {
                     break;
                 }
             }
@@ -180,7 +180,7 @@ impl<T: Real> UniformGrid<T> {
 /// Counts each cell's faces, then writes them, in the order of faces.
 fn fill<T: Real>(boxes: &[Corners<T>], cells: &Cells<T>, stop: &AtomicBool) -> (Vec<u32>, Vec<u32>) {
     let mut starts = vec![0u32; cells.total() + 1];
-    let stopped = |i: usize| i % 4096 == 0 && stop.load(Ordering::Relaxed);
+    let stopped = |i: usize| i.is_multiple_of(4096) && stop.load(Ordering::Relaxed);
     for (i, b) in boxes.iter().enumerate() {
         if stopped(i) {
             return (vec![], vec![]);
