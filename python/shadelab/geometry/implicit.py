@@ -176,9 +176,9 @@ def ray_implicit(
     *Polynomials* are solved in double precision whatever that of the rays: no root is missed but where two come so near
     that rounding cannot tell them apart, which then count as one, and as one where rounding cannot tell whether the
     line touches. A simple root where the surface is met at a fair angle is right to some thousand roundings for a
-    torus, fewer for quadrics; roots of multiplicity k have `1 / k` of the digits. The degree decides the cost: about a
-    microsecond for a torus. Polynomials live about the origin: bring rays there, rather than expanding a polynomial
-    about a distant centre.
+    torus, fewer for quadrics; roots of multiplicity k have `1 / k` of the digits. The degree decides the cost: a
+    torus takes some fifty to a hundred times as long as `ray_sphere`. Polynomials live about the origin: bring rays
+    there, rather than expanding a polynomial about a distant centre.
 
     *Callables*, sampled: a surface that is entered and left within one step, or touched, is missed; so is any at which
     the function does not change its sign. A pole is taken for a root. Where the sign changes, bisection made faster

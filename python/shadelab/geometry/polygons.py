@@ -113,8 +113,8 @@ def point_in_polygon(
     -----
     Exact: every side is told by the sign of an exact determinant. Repeated and collinear vertices, spikes, and polygons
     of one or two vertices (which have a border alone) need no care. Coordinates in float64 are to lie between 1e-140
-    and 1e150 in size, or be zero; all of float32 will do. Time grows with the number of vertices, each of which costs
-    some nanoseconds; no table is built.
+    and 1e150 in size, or be zero; all of float32 will do. Time grows with the number of vertices; no table is
+    built.
 
     References
     ----------
