@@ -11,16 +11,16 @@ import open3d as o3d
 import shadelab as sl
 import trimesh
 
-REPEATS = 5
+REPEATS = 3
 
 
 def scenes():
     yield "torus 16k", trimesh.creation.torus(1.0, 0.4, 90, 90)
     rng = np.random.default_rng(0)
     ball = trimesh.creation.icosphere(7)
-    crumpled = ball.vertices * rng.uniform(0.9, 1.0, (len(ball.vertices), 1))
+    crumpled = ball.vertices * rng.uniform(0.99, 1.0, (len(ball.vertices), 1))
     yield "crumpled sphere 328k", trimesh.Trimesh(crumpled, ball.faces, process=False)
-    # Some forty layers: many hits a ray.
+    # Up to forty layers: many hits a ray.
     balls = [trimesh.creation.icosphere(4, radius=r) for r in np.linspace(0.5, 1.0, 20)]
     yield "20 shells 102k", trimesh.util.concatenate(balls)
 

@@ -243,7 +243,8 @@ class InstancedBVH:
         return AllInstanceHits(*self._tree.all_hits(rays, _arrays.progress_callback(progress, "all_hits")))
 
     def _rays(self, *rays: Any) -> tuple[tuple[int, ...], list[NDArray[Any]]]:
-        return ray_arrays(self._dtype, self._faces, *rays, None)
+        o, d, t_min, t_max = rays
+        return ray_arrays(self._dtype, self._faces, o, d, t_min, t_max, None)
 
 
 def _inverses(m: Floats) -> Floats:
