@@ -29,7 +29,7 @@ def test_points_come_back_within_half_a_cell(bits, dtype):
     low, high = p.min((0, 1)), p.max((0, 1))
     codes = sl.accel.morton_encode(p, bits)
     assert codes.shape == (4, 50)
-    back = sl.accel.morton_decode(codes, bits, low=low, high=high)
+    back = sl.accel.morton_decode(codes, bits, lower=low, upper=high)
     # A rounding unit more, since borders of cells are rounded.
     assert (np.abs(back - p) <= (high - low) * (0.5 / 2 ** (bits // 3) + 1e-15) + np.abs(p) * 1e-15).all()
 
@@ -48,11 +48,11 @@ def test_flat_and_huge_boxes():
         (dict(points=[[0, 0, 1024]], bits=30), "points: expected cell numbers"),
         (dict(points=[[0, -1, 0]]), "points: expected cell numbers"),
         (dict(points=[[0.0, np.nan, 0]]), "points: expected finite"),
-        (dict(points=[[0.0, 2.0, 0]], low=[0, 0, 0], high=[1, 1, 1]), "points: expected points between"),
-        (dict(points=[[0.0, 0.5, 0]], low=[0, 1, 0], high=[1, 0, 1]), "high: expected at least low"),
+        (dict(points=[[0.0, 2.0, 0]], lower=[0, 0, 0], upper=[1, 1, 1]), "points: expected points between"),
+        (dict(points=[[0.0, 0.5, 0]], lower=[0, 1, 0], upper=[1, 0, 1]), "upper: expected at least lower"),
         (dict(points=[[0.0, 0.5]]), "points: expected shape"),
         (dict(points=[[0, 0, 0]], bits=32), "bits: expected 30 or 63"),
-        (dict(points=[[0, 0, 0]], low=[0, 0, 0]), "low: cell numbers have no box"),
+        (dict(points=[[0, 0, 0]], lower=[0, 0, 0]), "lower: cell numbers have no box"),
     ],
 )
 def test_bad_points_are_named(arguments, message):

@@ -2,8 +2,8 @@
 
 `python tests/benchmarks/build.py [--largest 1e7] [--repeats 3]`. Two threads each, arrays in to a structure that
 answers. The meshes are bumpy spheres of our own. Contenders alternate; medians are compared. `rays` is the time of a
-random ray, in ns on two threads; `growth` that time over the row above, beside the growth of log2 of the faces. Peak memory is
-measured in a process of its own, which builds once.
+random ray, in ns on two threads; `growth` that time over the row above, beside the growth of log2 of the faces. Peak
+memory is measured in a process of its own, which builds once.
 """
 
 import argparse
@@ -81,7 +81,9 @@ def main():
         for method in ("sah", "median", "lbvh"):
             bvh = sl.accel.BVH(v, f, method)
             bvh.closest_hit(o, d)
-            times.append(np.median([timed(lambda b=bvh: b.closest_hit(o, d))[1] for _ in range(args.repeats)]) * 1e3)
+            times.append(
+                np.median([timed(lambda b=bvh, o=o, d=d: b.closest_hit(o, d))[1] for _ in range(args.repeats)]) * 1e3
+            )
             if method == "sah":
                 size_of = bvh.stats().bytes / len(f)
             if method == "median":

@@ -30,17 +30,17 @@ class RadixTree(NamedTuple):
 
 
 def morton_encode(
-    points: ArrayLike, bits: int = 63, *, low: ArrayLike | None = None, high: ArrayLike | None = None
+    points: ArrayLike, bits: int = 63, *, lower: ArrayLike | None = None, upper: ArrayLike | None = None
 ) -> NDArray[Any]:
     """Morton codes: the bits of three cell numbers, interleaved, x lowest.
 
     Parameters
     ----------
     points : array_like, shape (..., 3)
-        Cell numbers, if integers; else points, whose cells divide the box from `low` to `high`.
+        Cell numbers, if integers; else points, whose cells divide the box from `lower` to `upper`.
     bits : {30, 63}
         Ten or twenty-one bits an axis.
-    low, high : array_like, shape (3,), optional
+    lower, upper : array_like, shape (3,), optional
         The box of the cells; that of all points together, if not given. Not for cell numbers.
 
     Returns
@@ -67,7 +67,7 @@ def morton_encode(
     --------
     >>> morton_encode([[0, 0, 0], [1, 0, 0], [0, 1, 0], [0, 0, 1], [3, 0, 0]], 30)
     array([0, 1, 2, 4, 9], dtype=uint32)
-    >>> morton_encode([[0.1, 0.1, 0.9]], 30, low=[0, 0, 0], high=[1, 1, 1])
+    >>> morton_encode([[0.1, 0.1, 0.9]], 30, lower=[0, 0, 0], upper=[1, 1, 1])
     array([613566756], dtype=uint32)
     """
     side = 1 << _axis_bits(bits)
@@ -75,13 +75,13 @@ def morton_encode(
     if array.ndim == 0 or array.shape[-1] != 3:
         raise ValueError(f"points: expected shape (..., 3), got {array.shape}")
     if array.dtype.kind in "iu" and array.size:
-        if low is not None or high is not None:
-            raise ValueError(f"{'low' if low is not None else 'high'}: cell numbers have no box")
+        if lower is not None or upper is not None:
+            raise ValueError(f"{'lower' if lower is not None else 'upper'}: cell numbers have no box")
         if array.min() < 0 or array.max() >= side:
             raise ValueError(f"points: expected cell numbers in [0, {side}), got {array.min()} to {array.max()}")
         cells = array.astype(np.uint64)
     else:
-        cells = _cells(array, side, low, high)
+        cells = _cells(array, side, lower, upper)
     codes = np.empty(array.shape[:-1], np.uint64)
     _kernels.morton_encode(np.ascontiguousarray(cells).reshape(-1, 3), codes.reshape(-1))
     return codes.astype(np.uint32) if bits == 30 else codes
@@ -93,24 +93,24 @@ def _axis_bits(bits: int) -> int:
     return bits // 3
 
 
-def _cells(array: NDArray[Any], side: int, low: ArrayLike | None, high: ArrayLike | None) -> NDArray[np.uint64]:
+def _cells(array: NDArray[Any], side: int, lower: ArrayLike | None, upper: ArrayLike | None) -> NDArray[np.uint64]:
     p = _arrays.floats("points", array, np.float64)
     if not p.size:
         return p.astype(np.uint64)
     if not np.isfinite(p).all():
         raise ValueError(f"points: expected finite points, got {p[~np.isfinite(p).all(-1)][0].tolist()}")
     axes = tuple(range(p.ndim - 1))
-    lower = p.min(axes) if low is None else _corner("low", low)
-    upper = p.max(axes) if high is None else _corner("high", high)
-    if (lower > upper).any():
-        raise ValueError(f"high: expected at least low, {lower.tolist()}, got {upper.tolist()}")
-    if (p < lower).any() or (p > upper).any():
-        outside = p[((p < lower) | (p > upper)).any(-1)][0]
-        raise ValueError(f"points: expected points between low and high, got {outside.tolist()}")
+    least = p.min(axes) if lower is None else _corner("lower", lower)
+    most = p.max(axes) if upper is None else _corner("upper", upper)
+    if (least > most).any():
+        raise ValueError(f"upper: expected at least lower, {least.tolist()}, got {most.tolist()}")
+    if (p < least).any() or (p > most).any():
+        outside = p[((p < least) | (p > most)).any(-1)][0]
+        raise ValueError(f"points: expected points between lower and upper, got {outside.tolist()}")
     with np.errstate(divide="ignore", invalid="ignore"):
         # Halves, so that no extent overflows.
-        place = (p / 2 - lower / 2) / (upper / 2 - lower / 2)
-    place = np.where(upper > lower, place, 0.0)
+        place = (p / 2 - least / 2) / (most / 2 - least / 2)
+    place = np.where(most > least, place, 0.0)
     return np.minimum(place * side, side - 1).astype(np.uint64)
 
 
@@ -122,7 +122,7 @@ def _corner(name: str, value: ArrayLike) -> Floats:
 
 
 def morton_decode(
-    codes: ArrayLike, bits: int = 63, *, low: ArrayLike | None = None, high: ArrayLike | None = None
+    codes: ArrayLike, bits: int = 63, *, lower: ArrayLike | None = None, upper: ArrayLike | None = None
 ) -> NDArray[Any]:
     """The cells of Morton codes, or their centres.
 
@@ -131,7 +131,7 @@ def morton_decode(
     codes : array_like of int, shape (...)
     bits : {30, 63}
         Ten or twenty-one bits an axis.
-    low, high : array_like, shape (3,), optional
+    lower, upper : array_like, shape (3,), optional
         The box that the cells divide. With both, centres of cells are returned.
 
     Returns
@@ -142,7 +142,7 @@ def morton_decode(
     Raises
     ------
     TypeError, ValueError
-        If an argument is not of its kind or shape, or a code is out of range; if one of `low` and `high` is missing.
+        If an argument is not of its kind or shape, or a code is out of range; if one of `lower` and `upper` is missing.
 
     Examples
     --------
@@ -161,13 +161,12 @@ def morton_decode(
         raise ValueError(f"codes: expected codes in [0, 2**{bits}), got {array.min()} to {array.max()}")
     cells = np.empty((*array.shape, 3), np.uint64)
     _kernels.morton_decode(np.ascontiguousarray(array.astype(np.uint64)).reshape(-1), cells.reshape(-1, 3))
-    if (low is None) != (high is None):
-        raise ValueError(f"{'low' if low is None else 'high'}: expected both corners of the box, or none")
-    if low is None or high is None:
+    if (lower is None) != (upper is None):
+        raise ValueError(f"{'lower' if lower is None else 'upper'}: expected both corners of the box, or none")
+    if lower is None or upper is None:
         return cells.astype(np.uint32) if bits == 30 else cells
-    lower, upper = _corner("low", low), _corner("high", high)
     weight = (cells + 0.5) / side
-    return (1 - weight) * lower + weight * upper
+    return (1 - weight) * _corner("lower", lower) + weight * _corner("upper", upper)
 
 
 def radix_tree(codes: ArrayLike) -> RadixTree:
