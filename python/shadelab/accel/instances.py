@@ -173,7 +173,7 @@ class InstancedBVH:
 
         Notes
         -----
-        Rays are followed one by one: some two to four times the time of `BVH.closest_hit` on one mesh.
+        Rays are followed one by one, not in packets: pictures gain nothing from their coherence.
         """
         shape, rays = self._rays(origins, directions, t_min, t_max)
         t, u, v = (np.empty(shape, self._dtype) for _ in range(3))

@@ -263,7 +263,7 @@ class PointQueries:
         - self-intersection: "winding" counts what is wound at least once as inside.
 
         Vertices at one position count as one, so that split vertices (of seams) do no harm. "angle_weighted" costs
-        little beside `closest_point`; its normals are computed at the first call and kept, 168 bytes a face.
+        little beside `closest_point`; its normals are computed at the first call and kept, some 120 bytes a face.
 
         References
         ----------
