@@ -68,7 +68,7 @@ def morton_encode(
     >>> morton_encode([[0, 0, 0], [1, 0, 0], [0, 1, 0], [0, 0, 1], [3, 0, 0]], 30)
     array([0, 1, 2, 4, 9], dtype=uint32)
     >>> morton_encode([[0.1, 0.1, 0.9]], 30, lower=[0, 0, 0], upper=[1, 1, 1])
-    array([613566756], dtype=uint32)
+    array([613271772], dtype=uint32)
     """
     side = 1 << _axis_bits(bits)
     array = np.asarray(points)
@@ -201,7 +201,7 @@ def radix_tree(codes: ArrayLike) -> RadixTree:
     --------
     >>> tree = radix_tree([1, 2, 4, 5, 19, 24, 25, 30])
     >>> tree.left.tolist(), tree.right.tolist()
-    ([3, 7, 9, 1, 11, 6, 12, 13], ...
+    ([3, 7, 9, 1, 11, 6, 12], [4, 8, 10, 2, 5, 14, 13])
     """
     array = np.asarray(codes)
     if array.dtype.kind not in "iu":
