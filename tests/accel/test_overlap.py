@@ -41,7 +41,7 @@ def test_boxes_that_are_none_and_boxes_without_end(dtype):
     assert np.diff(found.offsets).tolist() == [10, 0, 0, 10] and found.face[:10].tolist() == list(range(10))
     assert bvh.overlap(np.zeros((0, 3)), [1, 1, 1]).offsets.tolist() == [0]
     assert sl.accel.BVH(np.zeros((0, 3), dtype), []).overlap([0, 0, 0], [1, 1, 1]).face.size == 0
-    with pytest.raises(ValueError, match=r"low: expected shape \(\.\.\., 3\)"):
+    with pytest.raises(ValueError, match=r"lower: expected shape \(\.\.\., 3\)"):
         bvh.overlap([0, 0], [1, 1, 1])
 
 

@@ -37,12 +37,12 @@ class Movable:
     _faces: NDArray[np.int32]
     _build_ms: float
 
-    def overlap(self, low: ArrayLike, high: ArrayLike, *, progress: Progress = None) -> Overlaps:
+    def overlap(self, lower: ArrayLike, upper: ArrayLike, *, progress: Progress = None) -> Overlaps:
         """Find the faces that overlap axis-aligned boxes.
 
         Parameters
         ----------
-        low, high : array_like, shape (..., 3)
+        lower, upper : array_like, shape (..., 3)
             Corners of boxes, converted to the structure's precision; leading axes broadcast.
         progress : bool or callable, optional
             True for a bar, or called with (done, total).
@@ -60,7 +60,7 @@ class Movable:
         Notes
         -----
         The triangles themselves are tested, not their boxes: by all thirteen axes, exactly (see
-        `shadelab.geometry.triangle_aabb`). Touching counts. A box with NaN, or whose `low` exceeds its `high`, overlaps
+        `shadelab.geometry.triangle_aabb`). Touching counts. A box with NaN, or whose `lower` exceeds its `upper`, overlaps
         nothing; infinite boxes are as good as others.
 
         Examples
@@ -72,8 +72,8 @@ class Movable:
         """
         dtype = self._positions.dtype
         given: dict[str, tuple[Floats, int]] = {
-            "low": (_arrays.vectors("low", low, 3, dtype), 1),
-            "high": (_arrays.vectors("high", high, 3, dtype), 1),
+            "lower": (_arrays.vectors("lower", lower, 3, dtype), 1),
+            "upper": (_arrays.vectors("upper", upper, 3, dtype), 1),
         }
         _, flat = _arrays.broadcast(given)
         # Infinite boxes reach beyond every vertex at the largest number.
