@@ -12,6 +12,9 @@ use crate::simd::{Simd, SimdBase};
 /// Rays under way at a time.
 const ROWS: usize = 16;
 
+/// Trees smaller than this lie in the processor's caches: rays have nothing to wait for, and go one after the other.
+const CACHED: usize = 1 << 20;
+
 /// A ray under way.
 struct Row<T> {
     ray: Ready<T>,
@@ -147,6 +150,12 @@ pub fn trace<const ANY: bool, T: Real, S: Simd, R: Fn(usize) -> Ray<T>, F: FnMut
         return;
     }
     let mut queue = Queue::new(s, &tree.bounds, rays, chosen);
+    if size_of_val(&*tree.nodes) + size_of_val(&*tree.blocks) < CACHED {
+        while let Some((index, ignore, (ray, heading))) = queue.take(s, &mut answer) {
+            answer(index, ray.finish(single::trace::<ANY, T, S>(s, tree, &ray, heading, ignore)));
+        }
+        return;
+    }
     let mut rows: Vec<Row<T>> = Vec::with_capacity(ROWS.min(chosen.len()));
     while rows.len() < ROWS
         && let Some((index, ignore, made)) = queue.take(s, &mut answer)
