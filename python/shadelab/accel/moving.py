@@ -60,8 +60,8 @@ class Movable:
         Notes
         -----
         The triangles themselves are tested, not their boxes: by all thirteen axes, exactly (see
-        `shadelab.geometry.triangle_aabb`). Touching counts. A box with NaN, or whose `lower` exceeds its `upper`, overlaps
-        nothing; infinite boxes are as good as others.
+        `shadelab.geometry.triangle_aabb`). Touching counts. A box with NaN, or whose `lower` exceeds its `upper`,
+        overlaps nothing; infinite boxes are as good as others.
 
         Examples
         --------
