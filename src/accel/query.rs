@@ -26,6 +26,9 @@ const BAND: usize = 4;
 /// Narrower pictures are taken for lists.
 const NARROW: usize = 32;
 
+/// Rays a task, where every hit is asked for.
+const ALL_HITS: usize = 64;
+
 /// The order in which rays of a stretch are traced.
 #[derive(Clone, Copy)]
 struct Order {
@@ -206,7 +209,8 @@ impl<T: Real, A: Structure<T>> Queries<T> for A {
         rays: &Rays<T>,
         count: usize,
     ) -> Result<AllHits<T>, Interrupted> {
-        let piece = self.rays_a_task().min(count.max(1));
+        // Few, since a ray may have as many hits as there are faces.
+        let piece = ALL_HITS.min(count.max(1));
         let pieces: Vec<Mutex<Vec<Hit<T>>>> = (0..count.div_ceil(piece)).map(|_| Mutex::default()).collect();
         // The number of each ray's hits, in the place of its end.
         let mut offsets = vec![0i64; count + 1];
@@ -235,7 +239,7 @@ impl<T: Real, A: Structure<T>> Queries<T> for A {
         parallel::for_each(
             watch,
             out,
-            self.rays_a_task(),
+            if query == Query::AllHits { ALL_HITS } else { self.rays_a_task() },
             |first, (boxes, triangles): (&mut [i32], &mut [i32])| {
                 let mut found = Vec::new();
                 dispatch!(s => for i in 0..boxes.len() {

@@ -76,7 +76,8 @@ fn left_of(a: [f64; 2], b: [f64; 2], p: [f64; 2]) -> f64 {
     predicate::value(left::<Bounded>(a, b, p), || left::<Expansion>(a, b, p))
 }
 
-/// Which way a convex window turns: 1 counter-clockwise, -1 clockwise; None if it turns both ways, or not at all.
+/// Which way a convex window turns: 1 counter-clockwise, -1 clockwise; None if it turns both ways, more than once, or
+/// not at all.
 pub fn turning(window: &[[f64; 2]]) -> Option<f64> {
     let n = window.len();
     let mut seen = 0.0;
@@ -84,6 +85,14 @@ pub fn turning(window: &[[f64; 2]]) -> Option<f64> {
     let distinct: Vec<[f64; 2]> =
         (0..n).filter(|&i| window[i] != window[(i + 1) % n]).map(|i| window[i]).collect();
     let n = distinct.len();
+    // Once around, the border runs to the right and back once: a star that winds twice does so twice.
+    let ahead = |i: usize| {
+        let (p, q) = (distinct[i % n], distinct[(i + 1) % n]);
+        p[0] < q[0] || (p[0] == q[0] && p[1] < q[1])
+    };
+    if (0..n).filter(|&i| ahead(i) != ahead(i + 1)).count() > 2 {
+        return None;
+    }
     for i in 0..n {
         let turn = left_of(distinct[i], distinct[(i + 1) % n], distinct[(i + 2) % n]);
         if turn * seen < 0.0 {

@@ -55,3 +55,11 @@ def test_nan_stays_in_its_element():
     points[2] = 5
     o = sl.accel.offset_ray(points, [0, 1, 0])
     assert np.isnan(o[1]).any() and np.isfinite(o[[0, 2]]).all() and o[0, 1] > 0
+
+
+def test_a_point_at_infinity_moves_no_other():
+    p = np.array([[np.inf, 0, 0], [1, 0, 0]], np.float32)
+    moved = sl.accel.offset_ray(p, np.array([0, 0, 1], np.float32))
+    assert 0 < moved[1, 2] < 1e-5
+    with pytest.raises(ValueError, match="extent"):
+        sl.accel.offset_ray(p[1], [0, 0, 1.0], extent=-1)

@@ -146,3 +146,15 @@ def test_bad_windows_and_nan():
     got = geometry.clip_polygon(many, square)
     assert got.counts.tolist() == [0, 4] and np.isnan(got.points[0]).all()
     assert geometry.clip_polygon(np.zeros((0, 3, 2)), square).points.shape == (0, 7, 2)
+
+
+def test_a_star_is_no_convex_window():
+    """It turns one way at every corner, but twice around."""
+    around = 4 * np.pi * np.arange(5) / 5
+    star = np.stack([np.cos(around), np.sin(around)], -1)
+    square = [[-2, -2], [2, -2], [2, 2], [-2, 2.0]]
+    with pytest.raises(ValueError, match="window: expected a convex polygon"):
+        geometry.clip_polygon(square, star)
+    for turn in (star[np.argsort(np.arctan2(star[:, 1], star[:, 0]))], star[[0, 2, 4, 1, 3]][::-1]):
+        # The same corners, once around.
+        assert geometry.clip_polygon(square, turn).counts == 5

@@ -52,7 +52,10 @@ def mesh_arrays(positions: ArrayLike, faces: ArrayLike) -> tuple[Floats, NDArray
     p = _arrays.vectors("positions", positions)
     if p.ndim != 2:
         raise ValueError(f"positions: expected shape (V, 3), got {p.shape}")
-    array = np.asarray(faces)
+    try:
+        array = np.asarray(faces)
+    except ValueError as error:
+        raise ValueError(f"faces: {error}") from None
     f = _arrays.indices("faces", array.reshape(0, 3) if array.size == 0 else array, 3, p.shape[0])
     if f.shape[0] > 2**27:
         raise ValueError(f"faces: expected at most {2**27}, got {f.shape[0]}")

@@ -79,8 +79,8 @@ class UniformGrid(Structure):
     ) -> None:
         _arrays.number("cells_per_face", cells_per_face, above=0)
         if resolution is not None:
-            if len(resolution) != 3:
-                raise ValueError(f"resolution: expected three numbers of cells, got {len(resolution)}")
+            if np.shape(resolution) != (3,):
+                raise ValueError(f"resolution: expected three numbers of cells, got {resolution}")
             counts = [_arrays.count("resolution", n, 1, _MOST) for n in resolution]
         else:
             p, f = mesh_arrays(positions, faces)

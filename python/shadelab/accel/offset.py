@@ -78,10 +78,12 @@ def offset_ray(
     if isinstance(extent, BVH):
         extent = float(np.abs(extent.positions).max(initial=0))
     elif extent is None:
-        # NaN marks a bad point, not the extent of the others.
-        extent = float(np.nan_to_num(np.abs(p), nan=0.0).max(initial=0))
+        # What is not finite marks a bad point, not the extent of the others.
+        extent = float(np.abs(p).max(initial=0, where=np.isfinite(p)))
     extents = _arrays.floats("extent", extent, dtype)
-    if extents.ndim:
+    if extents.ndim == 0:
+        _arrays.number("extent", extents, 0)
+    else:
         core["extent"] = (extents, 0)
     shape, flat = _arrays.broadcast(core)
     arrays = dict(zip(core, flat, strict=True))

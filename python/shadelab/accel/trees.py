@@ -66,7 +66,7 @@ class Octree(Structure):
         max_depth: int = 16,
         progress: Progress = None,
     ) -> None:
-        size, depth = _arrays.count("leaf_size", leaf_size, 1), _arrays.count("max_depth", max_depth, 0, 32)
+        size, depth = _arrays.count("leaf_size", leaf_size, 1, 2**27), _arrays.count("max_depth", max_depth, 0, 32)
         self._build(positions, faces, _kernels.octree, progress, size, depth)
 
     def order(self, eye: ArrayLike, *, front_to_back: bool = False) -> Order:
@@ -152,7 +152,7 @@ class KDTree(Structure):
         progress: Progress = None,
     ) -> None:
         _arrays.choice("method", method, ("sah", "median"))
-        size, depth = _arrays.count("leaf_size", leaf_size, 1), _depth(max_depth, 8, 1.3, 96, np.shape(faces))
+        size, depth = _arrays.count("leaf_size", leaf_size, 1, 2**27), _depth(max_depth, 8, 1.3, 96, np.shape(faces))
         self._build(positions, faces, _kernels.kd_tree, progress, method, size, depth)
 
 
@@ -216,7 +216,7 @@ class BSPTree(Structure):
     ) -> None:
         _arrays.choice("method", method, ("axis_aligned", "polygon_aligned"))
         polygon = method == "polygon_aligned"
-        size = (1 if polygon else 8) if leaf_size is None else _arrays.count("leaf_size", leaf_size, 1)
+        size = (1 if polygon else 8) if leaf_size is None else _arrays.count("leaf_size", leaf_size, 1, 2**27)
         depth = _depth(max_depth, *((128, 0.0, 128) if polygon else (16, 2.0, 96)), np.shape(faces))
         self._build(positions, faces, _kernels.bsp_tree, progress, method, size, depth)
 

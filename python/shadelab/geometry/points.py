@@ -37,7 +37,9 @@ def barycentric(points: ArrayLike, a: ArrayLike, b: ArrayLike, c: ArrayLike) -> 
     Notes
     -----
     Computed in the promoted precision of all four arguments. The error grows as the rounding unit times the square of
-    the triangle's longest edge over its height. A triangle of zero area gives NaN. About 2 ns a point and thread.
+    the triangle's longest edge over its height. A triangle of zero area gives NaN, and so
+    do coordinates beyond 1e9 or below 1e-9 in float32 (1e75, 1e-75 in float64), whose fourth powers leave the range.
+    About 2 ns a point and thread.
 
     References
     ----------

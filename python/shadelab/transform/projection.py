@@ -230,7 +230,8 @@ def depth_precision(
     Raises
     ------
     TypeError, ValueError
-        If an argument is not real or arguments do not broadcast, if a convention or storage is unknown.
+        If an argument is not real or arguments do not broadcast, if a convention or storage is unknown, or if `near`
+        and `far` are single numbers and bound no volume.
 
     Notes
     -----
@@ -254,5 +255,9 @@ def depth_precision(
     """
     _arrays.choice("depth", depth, _DEPTHS)
     _arrays.choice("storage", storage, ("float32", "unorm24", "unorm16"))
+    if np.ndim(near) == 0 and np.ndim(far) == 0:
+        _arrays.number("near", near, above=0)
+        if not float(np.asarray(far)) > float(np.asarray(near)):
+            raise ValueError(f"far: expected more than near, {near}, got {far}")
     given = {"distance": (distance, 0), "near": (near, 0), "far": (far, 0)}
     return DepthPrecision(*_arrays.elementwise(_kernels.depth_precision, given, [0, 0], depth, storage))

@@ -11,7 +11,7 @@ use crate::simd::{Simd, SimdBase};
 use crate::vec::Vec3;
 
 /// Points a task.
-const PIECE: usize = 1024;
+const PIECE: usize = 256;
 
 impl<T: Real> Bvh<T> {
     /// Coordinates of points beyond this would overflow when squared.
@@ -108,7 +108,7 @@ pub fn closest_points<const ALL: bool, T: Real>(
     max_distance: &[T],
     found: Found<T>,
 ) -> Result<(), Interrupted> {
-    let piece = if ALL { (PIECE << 10) / tree.faces().max(1 << 10) } else { PIECE };
+    let piece = if ALL { (PIECE << 12) / tree.faces().max(1 << 10) } else { PIECE };
     parallel::for_each(watch, found, piece, |first, mut found| {
         dispatch!(s => for i in 0..found.distance.len() {
             let p = points[first + i];

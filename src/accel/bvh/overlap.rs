@@ -13,7 +13,7 @@ use crate::simd::Simd;
 use std::sync::{Mutex, PoisonError};
 
 /// Boxes a task.
-const PIECE: usize = 256;
+const PIECE: usize = 16;
 
 impl<T: Real> Bvh<T> {
     /// Appends the faces that overlap the box from `low` to `high`, in rising order.
