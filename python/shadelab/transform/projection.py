@@ -257,7 +257,8 @@ def depth_precision(
     _arrays.choice("storage", storage, ("float32", "unorm24", "unorm16"))
     if np.ndim(near) == 0 and np.ndim(far) == 0:
         _arrays.number("near", near, above=0)
-        if not float(np.asarray(far)) > float(np.asarray(near)):
-            raise ValueError(f"far: expected more than near, {near}, got {far}")
+        first, last = float(np.asarray(near)), float(np.asarray(far))
+        if not last > first:
+            raise ValueError(f"far: expected more than near, {first:g}, got {last:g}")
     given = {"distance": (distance, 0), "near": (near, 0), "far": (far, 0)}
     return DepthPrecision(*_arrays.elementwise(_kernels.depth_precision, given, [0, 0], depth, storage))
