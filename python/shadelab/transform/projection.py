@@ -230,8 +230,7 @@ def depth_precision(
     Raises
     ------
     TypeError, ValueError
-        If an argument is not real or arguments do not broadcast, if a convention or storage is unknown, or if `near`
-        and `far` are single numbers and bound no volume.
+        If an argument is not real or arguments do not broadcast, if a convention or storage is unknown.
 
     Notes
     -----
@@ -255,10 +254,5 @@ def depth_precision(
     """
     _arrays.choice("depth", depth, _DEPTHS)
     _arrays.choice("storage", storage, ("float32", "unorm24", "unorm16"))
-    if np.ndim(near) == 0 and np.ndim(far) == 0:
-        _arrays.number("near", near, above=0)
-        first, last = float(np.asarray(near)), float(np.asarray(far))
-        if not last > first:
-            raise ValueError(f"far: expected more than near, {first:g}, got {last:g}")
     given = {"distance": (distance, 0), "near": (near, 0), "far": (far, 0)}
     return DepthPrecision(*_arrays.elementwise(_kernels.depth_precision, given, [0, 0], depth, storage))
