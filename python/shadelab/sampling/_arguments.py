@@ -1,0 +1,27 @@
+"""What the files of this chapter ask of their arguments."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+from numpy.typing import ArrayLike, DTypeLike, NDArray
+
+
+def unsigned(name: str, value: ArrayLike, dtype: DTypeLike) -> NDArray[Any]:
+    """`value` as unsigned integers of `dtype`, refused rather than wrapped where they do not fit."""
+    array = np.asarray(value)
+    if array.dtype.kind not in "iu":
+        raise TypeError(f"{name}: expected integers, got dtype {array.dtype}")
+    limit = np.iinfo(np.dtype(dtype)).max
+    if array.size and (int(array.min()) < 0 or int(array.max()) > limit):
+        raise ValueError(f"{name}: expected integers from 0 to {limit}, got {array.min()} … {array.max()}")
+    return array.astype(dtype)
+
+
+def precision(dtype: DTypeLike) -> np.dtype[Any]:
+    """float32 or float64, as asked."""
+    wanted = np.dtype(dtype)
+    if wanted not in (np.dtype(np.float32), np.dtype(np.float64)):
+        raise TypeError(f"dtype: expected float32 or float64, got {wanted}")
+    return wanted
