@@ -48,6 +48,16 @@ def _triple(name: str, value: Any, low: float = -math.inf, high: float = math.in
     )
 
 
+def _interval(name: str, value: Any) -> tuple[float, float]:
+    """Two times in [0, 1], in order."""
+    try:
+        start, end = value
+    except (TypeError, ValueError):
+        raise ValueError(f"{name}: expected two numbers, got {value!r}") from None
+    start = _arrays.number(name, start, 0, 1)
+    return start, _arrays.number(name, end, start, 1)
+
+
 @dataclass(frozen=True)
 class Material:
     """A metallic-roughness material.
@@ -94,7 +104,7 @@ class Material:
 
 @dataclass(frozen=True)
 class Camera:
-    """A pinhole camera.
+    """A camera: a pinhole, or a thin lens; still, or moving while its shutter is open.
 
     Parameters
     ----------
@@ -106,11 +116,25 @@ class Camera:
         Vertical field of view in radians.
     near, far : float, optional
         Distances of the clipping planes; None means a thousandth of the distance to the target, and infinity.
+    aperture : float
+        Diameter of the lens in units of length; 0 is a pinhole.
+    focus_distance : float, optional
+        How far along the axis the plane lies that is seen sharp, maybe infinite; None means the target's distance.
+    shutter : two floats in [0, 1]
+        When it opens and closes: 0 is the time of `Instance.transform`, 1 that of `Instance.transform_end`.
+    end : Camera, optional
+        Where this one is at time 1 (its eye, target, up, angle and lens), if it moves.
 
     Raises
     ------
     TypeError, ValueError
         If a number is out of its domain, or the view does not exist (see `shadelab.transform.look_at`).
+
+    Notes
+    -----
+    What is at distance `z` is blurred to a disk whose diameter on the plane of focus is `aperture |z − f| / z`, and in
+    pixels `aperture |z − f| / (z f) · height / (2 tan(fov_y / 2))`. Rays and the path tracer know lens and shutter;
+    rasterised pictures are those of the pinhole at time 0.
 
     Examples
     --------
@@ -126,6 +150,10 @@ class Camera:
     fov_y: float = math.pi / 4
     near: float | None = None
     far: float | None = None
+    aperture: float = 0.0
+    focus_distance: float | None = None
+    shutter: tuple[float, float] = (0.0, 1.0)
+    end: Camera | None = None
 
     def __post_init__(self) -> None:
         set_ = object.__setattr__
@@ -136,6 +164,12 @@ class Camera:
             set_(self, "near", _arrays.number("near", self.near, above=0))
         if self.far is not None and not (self.far == math.inf):
             set_(self, "far", _arrays.number("far", self.far, above=self._near()))
+        set_(self, "aperture", _arrays.number("aperture", self.aperture, 0))
+        if self.focus_distance is not None and not (self.focus_distance == math.inf):
+            set_(self, "focus_distance", _arrays.number("focus_distance", self.focus_distance, above=0))
+        set_(self, "shutter", _interval("shutter", self.shutter))
+        if self.end is not None and not isinstance(self.end, Camera):
+            raise TypeError(f"end: expected a Camera, got {type(self.end).__name__}")
         self.view()
 
     def _near(self) -> float:
@@ -183,6 +217,13 @@ class Camera:
         return np.broadcast_to(np.asarray(self.eye, dtype), directions.shape), directions
 
 
+def _affine(name: str, matrix: Any) -> Floats:
+    m = np.eye(4) if matrix is None else _arrays.matrices(name, matrix, 4, np.float64)
+    if m.shape != (4, 4) or not np.isfinite(m).all() or not np.array_equal(m[3], [0, 0, 0, 1]):
+        raise ValueError(f"{name}: expected one finite affine matrix (4, 4), whose last row is 0, 0, 0, 1")
+    return m
+
+
 @dataclass(frozen=True, eq=False)
 class Instance:
     """A mesh placed in the world.
@@ -194,11 +235,14 @@ class Instance:
         An affine matrix from the mesh's space to the world; None leaves it where it is.
     materials : Material, or sequence of them
         What `Mesh.material_ids` index.
+    transform_end : array_like, shape (4, 4), optional
+        The matrix at time 1, if the mesh moves; `transform` is that at time 0. Vertices go straight from one to the
+        other at even speed, so a large turn is to be given in parts.
 
     Raises
     ------
     TypeError, ValueError
-        If the matrix is not finite and affine, or the mesh asks for a material that is not there.
+        If a matrix is not finite and affine, or the mesh asks for a material that is not there.
 
     Examples
     --------
@@ -210,13 +254,11 @@ class Instance:
     mesh: Mesh
     transform: Any = None
     materials: Any = field(default_factory=lambda: (Material(),))
+    transform_end: Any = None
 
     def __post_init__(self) -> None:
         if not isinstance(self.mesh, Mesh):
             raise TypeError(f"mesh: expected a Mesh, got {type(self.mesh).__name__}")
-        m = np.eye(4) if self.transform is None else _arrays.matrices("transform", self.transform, 4, np.float64)
-        if m.shape != (4, 4) or not np.isfinite(m).all() or not np.array_equal(m[3], [0, 0, 0, 1]):
-            raise ValueError("transform: expected one finite affine matrix (4, 4), whose last row is 0, 0, 0, 1")
         materials = (self.materials,) if isinstance(self.materials, Material) else tuple(self.materials)
         if not materials or not all(isinstance(material, Material) for material in materials):
             raise TypeError("materials: expected one Material or more")
@@ -226,12 +268,16 @@ class Instance:
             raise ValueError(
                 f"materials: face {face} of the mesh asks for material {int(ids[face])} of {len(materials)}"
             )
-        object.__setattr__(self, "transform", m)
+        object.__setattr__(self, "transform", _affine("transform", self.transform))
         object.__setattr__(self, "materials", materials)
+        if self.transform_end is not None:
+            object.__setattr__(self, "transform_end", _affine("transform_end", self.transform_end))
 
-    def world(self) -> Mesh:
-        """The mesh in world space."""
-        return self.mesh.transformed(self.transform)
+    def world(self, time: float = 0.0) -> Mesh:
+        """The mesh in world space, at a time in [0, 1]."""
+        if self.transform_end is None:
+            return self.mesh.transformed(self.transform)
+        return self.mesh.transformed((1 - time) * self.transform + time * self.transform_end)
 
 
 class SceneArrays(NamedTuple):
@@ -330,13 +376,22 @@ class Scene:
             raise ValueError("instances: expected at least one face in the scene")
         return np.stack([np.min([b[0] for b in boxes], 0), np.max([b[1] for b in boxes], 0)]).astype(np.float64)
 
-    def flatten(self, dtype: DTypeLike = np.float32) -> SceneArrays:
+    @property
+    def moves(self) -> bool:
+        """Whether any instance is elsewhere at time 1 than at time 0."""
+        return any(
+            i.transform_end is not None and not np.array_equal(i.transform, i.transform_end) for i in self.instances
+        )
+
+    def flatten(self, dtype: DTypeLike = np.float32, time: float = 0.0) -> SceneArrays:
         """All instances as one set of arrays in world space.
 
         Parameters
         ----------
         dtype : data type
             float32 or float64.
+        time : float in [0, 1]
+            At which moving instances stand where they then are.
 
         Returns
         -------
@@ -348,7 +403,8 @@ class Scene:
         TypeError
             If the data type is neither.
         """
-        worlds = [i.world().astype(dtype) for i in self.instances]
+        time = _arrays.number("time", time, 0, 1)
+        worlds = [i.world(time).astype(dtype) for i in self.instances]
         starts = np.cumsum([0] + [len(w.positions) for w in worlds])
         table: dict[Material, int] = {}
         ids, normals = [], []

@@ -63,6 +63,26 @@ def pinhole(camera: Camera, size: Size) -> tuple[tuple[float, ...], ...]:
     return tuple(tuple(float(x) for x in v) for v in (eye, corner, right * step, down * step))
 
 
+Pose = tuple[tuple[tuple[float, ...], ...], tuple[tuple[float, ...], ...], float]
+
+
+def _pose(camera: Camera, size: Size) -> Pose:
+    """The pinhole, the lens' radii to the right and upwards, and one over the distance of focus."""
+    eye, corner, right, down = pinhole(camera, size)
+    radius = camera.aperture / 2
+    lens = tuple(tuple(s * radius * x / math.hypot(*v) for x in v) for v, s in ((right, 1.0), (down, -1.0)))
+    focus = math.dist(camera.eye, camera.target) if camera.focus_distance is None else camera.focus_distance
+    return (eye, corner, right, down), lens, 1 / focus
+
+
+def lens_camera(
+    camera: Camera, size: Size, shutter: tuple[float, float] | None = None
+) -> tuple[Pose, Pose | None, tuple[float, float]]:
+    """The camera as kernels take it: how it stands at time 0 and, if it moves, at time 1; its shutter's times."""
+    end = None if camera.end is None else _pose(camera.end, size)
+    return _pose(camera, size), end, camera.shutter if shutter is None else shutter
+
+
 def check_bvh(bvh: Any) -> None:
     if not isinstance(bvh, BVH):
         raise TypeError(f"bvh: expected a BVH, got {type(bvh).__name__}")

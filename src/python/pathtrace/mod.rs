@@ -1,5 +1,6 @@
 //! Bindings of `pathtrace`, a file for each of its faces.
 
+pub(super) mod camera;
 mod casting;
 mod direct;
 mod paths;
@@ -17,6 +18,12 @@ fn pinhole<T: Real>([eye, corner, right, down]: [[f64; 3]; 4]) -> Pinhole<T> {
 
 #[pymodule]
 pub mod pathtrace {
+    #[pymodule_export]
+    use super::camera::camera_rays;
+    #[pymodule_export]
+    use super::camera::pixel_filter_density;
+    #[pymodule_export]
+    use super::camera::pixel_filter_sample;
     #[pymodule_export]
     use super::casting::ray_cast;
     #[pymodule_export]
