@@ -13,7 +13,7 @@ from typing import Any, NamedTuple, TypeAlias
 import numpy as np
 from numpy.typing import ArrayLike, DTypeLike, NDArray
 
-from . import _arrays, transform
+from . import _arrays, brdf, transform
 from . import mesh as _mesh
 from ._arrays import Floats
 from ._models import load, load_mesh
@@ -100,6 +100,9 @@ class Material:
         set_(self, "roughness", _arrays.number("roughness", self.roughness, 0, 1))
         set_(self, "specular", _arrays.number("specular", self.specular, 0, 1))
         set_(self, "emission", _triple("emission", self.emission, 0))
+
+    def _model(self) -> brdf.MetallicRoughness:
+        return brdf.MetallicRoughness(self.base_color, self.metallic, self.roughness, self.specular)
 
 
 @dataclass(frozen=True)
@@ -233,7 +236,7 @@ class Instance:
     mesh : Mesh
     transform : array_like, shape (4, 4)
         An affine matrix from the mesh's space to the world; None leaves it where it is.
-    materials : Material, or sequence of them
+    materials : Material or a model of `shadelab.brdf`, or sequence of them
         What `Mesh.material_ids` index.
     transform_end : array_like, shape (4, 4), optional
         The matrix at time 1, if the mesh moves; `transform` is that at time 0. Vertices go straight from one to the
@@ -259,9 +262,12 @@ class Instance:
     def __post_init__(self) -> None:
         if not isinstance(self.mesh, Mesh):
             raise TypeError(f"mesh: expected a Mesh, got {type(self.mesh).__name__}")
-        materials = (self.materials,) if isinstance(self.materials, Material) else tuple(self.materials)
-        if not materials or not all(isinstance(material, Material) for material in materials):
-            raise TypeError("materials: expected one Material or more")
+        materials = (self.materials,) if isinstance(self.materials, Material | brdf.Model) else tuple(self.materials)
+        if not materials or not all(isinstance(material, Material | brdf.Model) for material in materials):
+            raise TypeError("materials: expected one Material, or model of shadelab.brdf, or more")
+        for material in materials:
+            if isinstance(material, brdf.Model):
+                material._row()
         ids = self.mesh.material_ids
         if ids is not None and ids.size and int(ids.max()) >= len(materials):
             face = int(np.argmax(ids >= len(materials)))
@@ -294,12 +300,12 @@ class SceneArrays(NamedTuple):
     uvs: Floats | None
     """(V, 2), or None if no mesh has any; zero for those that have none."""
     material_ids: NDArray[np.int32]
-    """(F,) rows of the four tables."""
+    """(F,) rows of the tables of materials."""
     instance_ids: NDArray[np.int32]
     """(F,)"""
-    materials: tuple[Material, ...]
+    materials: tuple[Material | brdf.Model, ...]
     base_color: Floats
-    """(M, 3)"""
+    """(M, 3); of models of `shadelab.brdf` these are of the metallic-roughness material that comes nearest."""
     metallic: Floats
     """(M,)"""
     roughness: Floats
@@ -308,6 +314,10 @@ class SceneArrays(NamedTuple):
     """(M, 3)"""
     specular: Floats
     """(M,)"""
+    kinds: NDArray[np.int32]
+    """(M,) kinds of the reflection models."""
+    rows: Floats
+    """(M, N) their parameters, as kernels read them."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -406,7 +416,7 @@ class Scene:
         time = _arrays.number("time", time, 0, 1)
         worlds = [i.world(time).astype(dtype) for i in self.instances]
         starts = np.cumsum([0] + [len(w.positions) for w in worlds])
-        table: dict[Material, int] = {}
+        table: dict[Material | brdf.Model, int] = {}
         ids, normals = [], []
         for instance, world in zip(self.instances, worlds, strict=True):
             rows = np.array([table.setdefault(m, len(table)) for m in instance.materials], np.int32)
@@ -417,6 +427,8 @@ class Scene:
                 shading = np.nan_to_num(_mesh.vertex_normals(world.positions, world.faces), nan=0.0)
             normals.append(shading)
         materials = tuple(table) or (Material(),)
+        models = [m._model() if isinstance(m, Material) else m for m in materials]
+        seen = [m._stand_in() for m in models]
         counts = [len(w.faces) for w in worlds]
         return SceneArrays(
             _join([w.positions for w in worlds], (0, 3), dtype),
@@ -427,11 +439,13 @@ class Scene:
             _join(ids, (0,), np.int32),
             np.repeat(np.arange(len(worlds), dtype=np.int32), counts),
             materials,
-            np.array([m.base_color for m in materials], dtype),
-            np.array([m.metallic for m in materials], dtype),
-            np.array([m.roughness for m in materials], dtype),
-            np.array([m.emission for m in materials], dtype),
-            np.array([m.specular for m in materials], dtype),
+            np.array([m.base_color for m in seen], dtype),
+            np.array([m.metallic for m in seen], dtype),
+            np.array([m.roughness for m in seen], dtype),
+            np.array([getattr(m, "emission", (0.0, 0.0, 0.0)) for m in materials], dtype),
+            np.array([m.specular for m in seen], dtype),
+            np.array([m._kind for m in models], np.int32),
+            np.array([m._row() for m in models], dtype),
         )
 
 

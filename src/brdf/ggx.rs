@@ -13,44 +13,19 @@
 //! *Sampling visible GGX normals with spherical caps*, 2023.
 
 use super::fresnel::schlick_weight;
+pub use super::microfacets::Masking;
+use super::microfacets::Microfacets;
 use crate::dispatch;
-use crate::math;
 use crate::parallel::{self, Interrupted, Watch};
 use crate::real::{Lanes, Real};
 use crate::vec::Vec3;
 
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Masking {
-    HeightCorrelated,
-    Separable,
-}
-
-/// √(cos² + alpha² sin²) of a unit direction: 1 + Smith's Λ is half of one plus this over the cosine.
-#[inline(always)]
-fn stretched<T: Real>(w: Vec3<T>, alpha: T) -> T {
-    (w.z * w.z + alpha * alpha * (w.x * w.x + w.y * w.y)).sqrt()
-}
-
-/// The distribution of normals at the (unnormalised) half vector, and the cosine between it and either direction.
-#[inline(always)]
-fn distribution<T: Real>(half: Vec3<T>, alpha: T) -> (T, T) {
-    let squared = half.length_squared();
-    let a2 = alpha * alpha;
-    let width = (a2 * half.z * half.z + (half.x * half.x + half.y * half.y)) / squared;
-    // Unit directions: (wi + wo)·wo = |wi + wo|² / 2.
-    (a2 / (T::PI * width * width), T::of(0.5) * squared.sqrt())
-}
-
 /// D · V and wo·h; both directions above the horizon.
 #[inline(always)]
 pub fn distribution_and_visibility<T: Real>(wi: Vec3<T>, wo: Vec3<T>, alpha: T, masking: Masking) -> (T, T) {
-    let (d, cos_half) = distribution(wi + wo, alpha);
-    let (si, so) = (stretched(wi, alpha), stretched(wo, alpha));
-    let v = match masking {
-        Masking::HeightCorrelated => T::of(0.5) / (wi.z * so + wo.z * si),
-        Masking::Separable => T::one() / ((wi.z + si) * (wo.z + so)),
-    };
-    (d * v, cos_half)
+    let (facets, half) = (Microfacets::ggx(alpha, masking), wi + wo);
+    // Unit directions: (wi + wo)·wo = |wi + wo|² / 2.
+    (facets.distribution(half) * facets.visibility(wi, wo, half), T::of(0.5) * half.length_squared().sqrt())
 }
 
 /// The BRDF in sr⁻¹, per channel of `f0`; zero unless both directions are above the horizon.
@@ -67,20 +42,8 @@ pub fn ggx<T: Real>(wi: Vec3<T>, wo: Vec3<T>, alpha: T, f0: Vec3<T>, masking: Ma
 /// A direction `wi` for `wo` above the horizon, from two numbers of [0, 1); may lie below the horizon.
 #[inline(always)]
 pub fn ggx_sample<T: Real>(wo: Vec3<T>, u: [T; 2], alpha: T) -> Vec3<T> {
-    let (one, two) = (T::one(), T::of(2.0));
-    // In the space where the surface is as rough as a hemisphere, visible normals are halfway between `wo` and the
-    // points of the cap that it sees: z from 1 down to −cos.
-    let stretched = Vec3::new(alpha * wo.x, alpha * wo.y, wo.z).normalize();
-    let turn = if u[0] > T::of(0.5) { u[0] - one } else { u[0] };
-    let (sin, cos) = math::sin_cos(two * T::PI * turn);
-    let above = one + stretched.z;
-    let below = (stretched.x * stretched.x + stretched.y * stretched.y) / above;
-    let (one_minus_z, one_plus_z) = (u[1] * above, (one - u[1]) * above + below);
-    let r = Lanes::max(one_minus_z * one_plus_z, T::zero()).sqrt();
-    let half =
-        Vec3::new(alpha * (r * cos + stretched.x), alpha * (r * sin + stretched.y), (one - u[1]) * above);
-    let half = half.normalize();
-    half * (two * wo.dot(half)) - wo
+    let half = Microfacets::ggx(alpha, Masking::Separable).sample(wo, u);
+    half * (T::of(2.0) * wo.dot(half)) - wo
 }
 
 /// The density of [`ggx_sample`] per solid angle of `wi`.
@@ -90,7 +53,7 @@ pub fn ggx_pdf<T: Real>(wi: Vec3<T>, wo: Vec3<T>, alpha: T) -> T {
     if wo.z <= T::zero() || half.z <= T::zero() {
         return T::zero();
     }
-    distribution(half, alpha).0 / (T::of(2.0) * (wo.z + stretched(wo, alpha)))
+    Microfacets::ggx(alpha, Masking::Separable).density_over_cosine(wo, half) * T::of(0.25)
 }
 
 /// [`ggx`] over arrays of equal length; NaN where alpha is not in (0, 1] or f0 not in [0, 1].

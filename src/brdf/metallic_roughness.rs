@@ -11,6 +11,7 @@
 
 use super::fresnel::schlick_weight;
 use super::ggx::{self, Masking};
+use super::model::{Draw, Model, Row, triple, weighed};
 use crate::dispatch;
 use crate::parallel::{self, Interrupted, Watch};
 use crate::real::{Lanes, Real};
@@ -126,6 +127,26 @@ impl<T: Real> Lobes<T> {
         let chance = self.specular_chance(wo);
         let mirrors = if chance > T::zero() { ggx::ggx_pdf(wi, wo, self.alpha) } else { T::zero() };
         chance * mirrors + (T::one() - chance) * square_to_cosine_hemisphere_pdf(wi)
+    }
+}
+
+impl<T: Real> Model<T> for Lobes<T> {
+    #[inline(always)]
+    fn of(row: &Row<T>) -> Self {
+        let [metallic, roughness, specular] = [row[3], row[4], row[5]];
+        Material { base_color: triple(row, 0), metallic, roughness, specular }.lobes()
+    }
+    #[inline(always)]
+    fn eval(&self, wi: Vec3<T>, wo: Vec3<T>) -> Vec3<T> {
+        Lobes::eval(self, wi, wo)
+    }
+    #[inline(always)]
+    fn pdf(&self, wi: Vec3<T>, wo: Vec3<T>) -> T {
+        Lobes::pdf(self, wi, wo)
+    }
+    #[inline(always)]
+    fn sample(&self, wo: Vec3<T>, u: [T; 3]) -> Option<Draw<T>> {
+        (wo.z > T::zero()).then(|| weighed(self, Lobes::sample(self, wo, u), wo, T::one()))
     }
 }
 

@@ -1,0 +1,21 @@
+"""Reflection models: evaluation, sampling, density.
+
+Directions are unit vectors that leave the surface, in the local frame whose z is the normal: `wi` to the light, `wo`
+to the eye. Values are BRDFs in sr⁻¹, without the cosine; densities are per solid angle of `wi`.
+"""
+
+from ._model import Draws, Model
+from .interface import *  # noqa: F403
+from .interface import __all__ as _interface
+from .metallic import *  # noqa: F403
+from .metallic import __all__ as _metallic
+from .mirrors import *  # noqa: F403
+from .mirrors import __all__ as _mirrors
+from .models import *  # noqa: F403
+from .models import __all__ as _models
+
+__all__: list[str] = ["Draws", "Model"]
+__all__ += _mirrors
+__all__ += _interface
+__all__ += _metallic
+__all__ += _models

@@ -1,0 +1,89 @@
+"""Rough metal: Mitsuba's values, reciprocity, energy, and draws that follow their density."""
+
+import importlib.util
+from pathlib import Path
+
+import numpy as np
+import pytest
+from shadelab import brdf
+
+spec = importlib.util.spec_from_file_location("brdf_common", Path(__file__).with_name("common.py"))
+common = importlib.util.module_from_spec(spec)
+spec.loader.exec_module(common)
+
+ETA, K = (0.2, 0.92, 1.1), (3.91, 2.45, 2.14)
+
+
+@pytest.mark.parametrize("distribution", ["ggx", "beckmann"])
+@pytest.mark.parametrize(("alpha", "alpha_y"), [(0.05, 0.05), (0.3, 0.3), (0.1, 0.5), (1.0, 1.0)])
+def test_values_are_mitsubas(distribution, alpha, alpha_y):
+    pytest.importorskip("mitsuba")
+    wi, wo = common.directions(200, 1, np.float32, 0.05), common.directions(200, 2, np.float32, 0.05)
+    model = brdf.RoughConductor(alpha, ETA, K, alpha_y=alpha_y, distribution=distribution, masking="separable")
+    # Half of the pairs where the lobe is.
+    wi[:100] = model.sample(wo[:100], np.random.default_rng(3).random((100, 3)).astype(np.float32)).wi
+    keep = wi[:, 2] > 0.02
+    wi, wo = wi[keep].astype(float), wo[keep].astype(float)
+    rgb = {n: {"type": "rgb", "value": list(v)} for n, v in (("eta", ETA), ("k", K))}
+    # Beckmann's normals are all drawn here; Mitsuba's own density of visible ones follows another masking.
+    description = {"type": "roughconductor", "distribution": distribution, "alpha_u": alpha, "alpha_v": alpha_y, **rgb}
+    description["sample_visible"] = distribution == "ggx"
+    # Mitsuba's half vector is normalised in single precision: 1e-7 of slope over alpha, doubled by the lobe.
+    common.agrees_with_mitsuba(model, description, wi, wo, 1e-5 + 2e-6 / min(alpha, alpha_y))
+
+
+@pytest.mark.parametrize("distribution", ["ggx", "beckmann"])
+@pytest.mark.parametrize("masking", ["height_correlated", "separable", "schlick", "v_cavity"])
+@pytest.mark.parametrize("dtype", [np.float32, np.float64])
+def test_the_model_is_reciprocal(distribution, masking, dtype):
+    wi, wo = common.directions(1000, 3, dtype), common.directions(1000, 4, dtype)
+    model = brdf.RoughConductor(0.3, ETA, K, alpha_y=0.6, distribution=distribution, masking=masking)
+    a, b = model.eval(wi, wo), model.eval(wo, wi)
+    assert a.dtype == dtype and a.any()
+    np.testing.assert_allclose(a, b, rtol=40 * np.finfo(dtype).eps)
+
+
+@pytest.mark.parametrize("distribution", ["ggx", "beckmann"])
+@pytest.mark.parametrize("cosine", [1.0, 0.5, 0.1])
+def test_the_density_integrates_to_one(distribution, cosine):
+    model = brdf.RoughConductor(0.3, ETA, K, alpha_y=0.5, distribution=distribution)
+    sum_ = common.total(lambda w: model.pdf(w, common.at(cosine, 0.4)))
+    # Of Beckmann's normals those that face away from the eye bring nothing: at grazing angles nearly half.
+    if distribution == "ggx":
+        assert sum_ == pytest.approx(1, abs=2e-4)
+    else:
+        assert sum_ <= 1 + 2e-4
+
+
+@pytest.mark.parametrize("distribution", ["ggx", "beckmann"])
+@pytest.mark.parametrize(("alpha", "alpha_y"), [(0.25, 0.25), (0.2, 0.7), (1.0, 1.0)])
+@pytest.mark.parametrize("cosine", [0.95, 0.3])
+def test_draws_follow_the_density(distribution, alpha, alpha_y, cosine):
+    if distribution == "beckmann" and cosine < 0.9:
+        # Drawn without regard to the eye: the density has a pole at -wo, which cells do not resolve.
+        cosine = 0.7
+        alpha = alpha_y = 0.25
+    model = brdf.RoughConductor(alpha, ETA, K, alpha_y=alpha_y, distribution=distribution)
+    assert common.samples_follow(model, common.at(cosine, 0.7)) > 1e-4
+
+
+@pytest.mark.parametrize("distribution", ["ggx", "beckmann"])
+@pytest.mark.parametrize("masking", ["height_correlated", "separable", "v_cavity"])
+def test_no_more_comes_back_than_came(distribution, masking):
+    for alpha in (0.05, 0.3, 1.0):
+        for cosine in (1.0, 0.4, 0.05):
+            model = brdf.RoughConductor(alpha, 1e-9, 1e9, distribution=distribution, masking=masking)
+            u = np.random.default_rng(1).random((20000, 3))
+            weight = model.sample(np.broadcast_to(common.at(cosine), (20000, 3)), u).weight
+            # Three deviations of the mean.
+            assert weight.mean() <= 1 + 3 * weight.std() / np.sqrt(20000) + 1e-5
+
+
+def test_each_element_may_have_its_own_parameters():
+    wi, wo = common.directions(6, 3), common.directions(6, 4)
+    alpha = np.linspace(0.1, 0.9, 6)
+    together = brdf.RoughConductor(alpha, ETA, K).eval(wi, wo)
+    alone = [brdf.RoughConductor(float(a), ETA, K).eval(i, o) for a, i, o in zip(alpha, wi, wo, strict=True)]
+    assert np.array_equal(together, alone)
+    table = brdf.RoughConductor(alpha[:2, None], ETA, K).eval(wi, wo)
+    assert np.array_equal(table[1], brdf.RoughConductor(float(alpha[1]), ETA, K).eval(wi, wo))
