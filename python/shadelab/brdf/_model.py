@@ -120,7 +120,7 @@ class Model:
         ids = np.ascontiguousarray(np.broadcast_to(np.arange(size, dtype=np.int32).reshape(lead), shape)).reshape(-1)
         return shape, flat, (self._kind, rows.reshape(-1, ROW), None if size == len(ids) else ids)
 
-    def _row(self) -> NDArray[np.float64]:
+    def _row(self) -> Floats:
         """The row of a model whose parameters are lone numbers: what a scene holds."""
         for f in fields(self):
             if isinstance(getattr(self, f.name), np.ndarray):
