@@ -20,16 +20,21 @@ Floats: TypeAlias = NDArray[np.floating[Any]]
 
 __all__ = [
     "Floats",
+    "apart",
+    "array",
     "broadcast",
     "choice",
     "count",
     "elementwise",
+    "flag",
     "floats",
     "image",
     "indices",
+    "knob_array",
     "matrices",
     "number",
     "output",
+    "precision",
     "progress_callback",
     "result_dtype",
     "vectors",
@@ -42,7 +47,9 @@ def _own_dtype(name: str, value: Any) -> np.dtype[Any] | None:
     dtype = getattr(value, "dtype", None)
     if dtype is None:
         return None
-    dtype = np.dtype(dtype)
+    if not isinstance(dtype, np.dtype):
+        # Other libraries' arrays have dtypes of their own.
+        dtype = array(name, value).dtype
     if dtype.kind in "iub":
         return np.dtype(np.float64)
     if dtype.kind != "f":
@@ -59,33 +66,38 @@ def result_dtype(**arrays: Any) -> np.dtype[Any]:
     return np.result_type(*own) if own else np.dtype(np.float64)
 
 
+def array(name: str, value: Any) -> NDArray[Any]:
+    """`value` as an array of whatever it holds; ragged lists are refused."""
+    try:
+        return np.asarray(value)
+    except (TypeError, ValueError) as error:
+        raise type(error)(f"{name}: {error}") from None
+
+
 def floats(name: str, value: ArrayLike, dtype: DTypeLike | None = None) -> Floats:
     """`value` as a C-contiguous array of float32 or float64 (or of the `dtype` that governs)."""
     target = np.dtype(dtype) if dtype is not None else result_dtype(**{name: value})
-    try:
-        array = np.asarray(value)
-    except ValueError as error:
-        raise ValueError(f"{name}: {error}") from None
-    if array.dtype.kind not in "fiub":
-        raise TypeError(f"{name}: expected real numbers, got dtype {array.dtype}")
+    given = array(name, value)
+    if given.dtype.kind not in "fiub":
+        raise TypeError(f"{name}: expected real numbers, got dtype {given.dtype}")
     with np.errstate(over="ignore"):
-        return np.require(array, dtype=target, requirements=["C", "A"])
+        return np.require(given, dtype=target, requirements=["C", "A"])
 
 
 def vectors(name: str, value: ArrayLike, n: int = 3, dtype: DTypeLike | None = None) -> Floats:
     """`value` as vectors of `n` components, shape (..., n)."""
-    array = floats(name, value, dtype)
-    if array.ndim == 0 or array.shape[-1] != n:
-        raise ValueError(f"{name}: expected shape (..., {n}), got {array.shape}")
-    return array
+    given = floats(name, value, dtype)
+    if given.ndim == 0 or given.shape[-1] != n:
+        raise ValueError(f"{name}: expected shape (..., {n}), got {given.shape}")
+    return given
 
 
 def matrices(name: str, value: ArrayLike, n: int = 4, dtype: DTypeLike | None = None) -> Floats:
     """`value` as square matrices, shape (..., n, n)."""
-    array = floats(name, value, dtype)
-    if array.shape[-2:] != (n, n):
-        raise ValueError(f"{name}: expected shape (..., {n}, {n}), got {array.shape}")
-    return array
+    given = floats(name, value, dtype)
+    if given.shape[-2:] != (n, n):
+        raise ValueError(f"{name}: expected shape (..., {n}, {n}), got {given.shape}")
+    return given
 
 
 def image(name: str, value: ArrayLike, channels: int | None = None, dtype: DTypeLike | None = None) -> Floats:
@@ -96,28 +108,28 @@ def image(name: str, value: ArrayLike, channels: int | None = None, dtype: DType
             f"{name}: expected linear floating-point values, got an integer picture; "
             f"convert with shadelab.color.decode_transfer({name} / 255.0)"
         )
-    array = floats(name, value, dtype)
-    if array.ndim not in (2, 3) or (channels is not None and (array.ndim != 3 or array.shape[-1] != channels)):
+    given = floats(name, value, dtype)
+    if given.ndim not in (2, 3) or (channels is not None and (given.ndim != 3 or given.shape[-1] != channels)):
         expected = "(H, W) or (H, W, C)" if channels is None else f"(H, W, {channels})"
-        raise ValueError(f"{name}: expected shape {expected}, got {array.shape}")
-    return array
+        raise ValueError(f"{name}: expected shape {expected}, got {given.shape}")
+    return given
 
 
 def indices(name: str, value: ArrayLike, n: int | None = None, below: int | None = None) -> NDArray[np.int32]:
     """`value` as int32 indices, of `n` columns and in [0, below) if given; the first bad index is named."""
-    array = np.asarray(value)
-    if array.size == 0 and array.dtype.kind == "f":
-        array = array.astype(np.int32)
-    if array.dtype.kind not in "iu":
-        raise TypeError(f"{name}: expected integers, got dtype {array.dtype}")
-    if n is not None and (array.ndim != 2 or array.shape[-1] != n):
-        raise ValueError(f"{name}: expected shape (m, {n}), got {array.shape}")
+    given = array(name, value)
+    if given.size == 0 and given.dtype.kind == "f":
+        given = given.astype(np.int32)
+    if given.dtype.kind not in "iu":
+        raise TypeError(f"{name}: expected integers, got dtype {given.dtype}")
+    if n is not None and (given.ndim != 2 or given.shape[-1] != n):
+        raise ValueError(f"{name}: expected shape (m, {n}), got {given.shape}")
     limit = np.iinfo(np.int32).max if below is None else below - 1
-    if array.size and (array.min() < 0 or array.max() > limit):
-        bad = (array < 0) | (array > limit)
+    if given.size and (given.min() < 0 or given.max() > limit):
+        bad = (given < 0) | (given > limit)
         at = tuple(int(i) for i in np.argwhere(bad)[0])
-        raise ValueError(f"{name}: index {array[at]} at {at} is out of range [0, {limit + 1})")
-    return np.require(array, dtype=np.int32, requirements=["C", "A"])
+        raise ValueError(f"{name}: index {given[at]} at {at} is out of range [0, {limit + 1})")
+    return np.require(given, dtype=np.int32, requirements=["C", "A"])
 
 
 def broadcast(
@@ -134,11 +146,19 @@ def broadcast(
         raise ValueError("cannot broadcast " + ", ".join(f"{n}: {s}" for n, s in leads.items())) from None
     size = math.prod(shape)
     flat = []
-    for array, k in core.values():
-        tail = array.shape[array.ndim - k :]
-        full = array if array.shape[: array.ndim - k] == shape else np.broadcast_to(array, shape + tail)
+    for a, k in core.values():
+        tail = a.shape[a.ndim - k :]
+        full = a if a.shape[: a.ndim - k] == shape else np.broadcast_to(a, shape + tail)
         flat.append(np.require(full.reshape((size, *tail)), requirements=["C", "A"]))
     return shape, flat
+
+
+def knob_array(name: str, value: ArrayLike, dtype: DTypeLike) -> Floats:
+    """Numbers of the precision that governs; NaN is for elements of arrays, not for all."""
+    given = floats(name, value, dtype)
+    if given.ndim == 0 and np.isnan(given):
+        raise ValueError(f"{name}: expected a number, got nan")
+    return given
 
 
 Core: TypeAlias = int | tuple[int, int]
@@ -166,10 +186,7 @@ def elementwise(
         else:
             core[name] = (vectors(name, value, n, dtype), 1) if n else (floats(name, value, dtype), 0)
     for name, knob in (knobs or {}).items():
-        array = floats(name, knob, dtype)
-        if array.ndim == 0 and np.isnan(array):
-            raise ValueError(f"{name}: expected a number, got nan")
-        core[name] = (array, 0)
+        core[name] = (knob_array(name, knob, dtype), 0)
     shape, flat = broadcast(core)
     out = []
     for o in outputs:
@@ -192,6 +209,11 @@ def output(name: str, out: NDArray[Any] | None, shape: Sequence[int], dtype: DTy
     if not (out.flags.c_contiguous and out.flags.aligned and out.flags.writeable):
         raise ValueError(f"{name}: expected a C-contiguous, writeable array")
     return out
+
+
+def apart(out: NDArray[Any], *arrays: Any) -> tuple[Any, ...]:
+    """The arrays, and copies of those that lie where results are written."""
+    return tuple(a.copy() if np.may_share_memory(a, out) else a for a in arrays)
 
 
 def number(
@@ -236,6 +258,24 @@ def choice(name: str, value: Any, options: Sequence[str]) -> str:
     if value not in options:
         raise ValueError(f"{name}: expected one of {', '.join(map(repr, options))}, got {value!r}")
     return value
+
+
+def flag(name: str, value: Any) -> bool:
+    """True or False."""
+    if isinstance(value, bool | np.bool_) or (isinstance(value, int) and value in (0, 1)):
+        return bool(value)
+    raise TypeError(f"{name}: expected True or False, got {type(value).__name__}")
+
+
+def precision(name: str, value: Any) -> np.dtype[Any]:
+    """float32 or float64."""
+    try:
+        dtype = np.dtype(value)
+    except (TypeError, ValueError):
+        dtype = np.dtype(object)
+    if value is None or dtype not in (np.float32, np.float64):
+        raise TypeError(f"{name}: expected float32 or float64, got {value!r}")
+    return dtype
 
 
 def warn_if_coarse(positions: NDArray[Any], dtype: DTypeLike, level: int) -> None:

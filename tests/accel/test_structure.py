@@ -1,6 +1,8 @@
 """The protocol that all structures share: every answer is brute force's to the bit, on every mesh, for every ray."""
 
 import _thread
+import copy
+import pickle
 import threading
 import time
 from functools import partial
@@ -278,3 +280,37 @@ def test_builds_and_queries_stop_for_ctrl_c(make):
         # The promise is 0.2 s; machines under load get more.
         assert time.perf_counter() - start < 1.5
         timer.join()
+
+
+@pytest.mark.parametrize("copied", [copy.copy, copy.deepcopy, lambda s: pickle.loads(pickle.dumps(s))])
+@pytest.mark.parametrize(
+    "made",
+    [
+        lambda m: A.UniformGrid(m.positions, m.faces, cells_per_face=3.0, mailbox=False),
+        lambda m: A.UniformGrid(m.positions, m.faces, resolution=(3, 4, 5)),
+        lambda m: A.Octree(m.positions, m.faces, leaf_size=3, max_depth=7),
+        lambda m: A.KDTree(m.positions, m.faces, method="median", leaf_size=2),
+        lambda m: A.BSPTree(m.positions, m.faces, method="polygon_aligned", max_depth=9),
+        lambda m: A.BVH(m.positions, m.faces, method="lbvh"),
+    ],
+)
+def test_copies_are_as_good(made, copied):
+    mesh = sl.mesh.torus()
+    one = made(mesh)
+    other = copied(one)
+    assert type(other) is type(one)
+    assert other.stats()[:-1] == one.stats()[:-1]
+    origins = np.random.default_rng(1).normal(size=(100, 3))
+    for a, b in zip(one.closest_hit(origins, -origins)[:4], other.closest_hit(origins, -origins)[:4], strict=True):
+        np.testing.assert_array_equal(a, b)
+    assert not other.positions.flags.writeable
+    if hasattr(one, "resolution"):
+        assert other.resolution == one.resolution
+
+
+def test_broken_state_is_named():
+    mesh = sl.mesh.box()
+    for made in (A.UniformGrid, A.Octree, A.KDTree, A.BSPTree):
+        empty = made.__new__(made)
+        with pytest.raises(ValueError, match="lacks faces"):
+            empty.__setstate__({"positions": mesh.positions, "options": ()})

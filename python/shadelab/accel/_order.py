@@ -26,7 +26,7 @@ class Order(NamedTuple):
 def order(tree: Any, dtype: np.dtype[Any], eye: ArrayLike, front_to_back: bool) -> Order:
     e = _arrays.vectors("eye", eye, 3, dtype)
     if e.shape != (3,) or not np.isfinite(e).all():
-        raise ValueError(f"eye: expected a finite point, got {np.asarray(eye).tolist()}")
+        raise ValueError(f"eye: expected a finite point, got {e.tolist()}")
+    step = 1 if _arrays.flag("front_to_back", front_to_back) else -1
     face, corners = _kernels.order(tree, e)
-    step = 1 if front_to_back else -1
     return Order(np.ascontiguousarray(face[::step]), np.ascontiguousarray(corners.reshape(-1, 3, 3)[::step]))

@@ -52,10 +52,7 @@ def mesh_arrays(positions: ArrayLike, faces: ArrayLike) -> tuple[Floats, NDArray
     p = _arrays.vectors("positions", positions)
     if p.ndim != 2:
         raise ValueError(f"positions: expected shape (V, 3), got {p.shape}")
-    try:
-        array = np.asarray(faces)
-    except ValueError as error:
-        raise ValueError(f"faces: {error}") from None
+    array = _arrays.array("faces", faces)
     f = _arrays.indices("faces", array.reshape(0, 3) if array.size == 0 else array, 3, p.shape[0])
     if f.shape[0] > 2**27:
         raise ValueError(f"faces: expected at most {2**27}, got {f.shape[0]}")
@@ -91,10 +88,7 @@ def ray_arrays(
         "directions": (_arrays.vectors("directions", directions, 3, dtype), 1),
     }
     for name, value in (("t_min", t_min), ("t_max", t_max)):
-        array = _arrays.floats(name, value, dtype)
-        if array.ndim == 0 and np.isnan(array):
-            raise ValueError(f"{name}: expected a number, got nan")
-        core[name] = (array, 0)
+        core[name] = (_arrays.knob_array(name, value, dtype), 0)
     core["ignore_face"] = (_ignored_faces(ignore_face, faces), 0)
     # What is one for all stays one.
     many = {n: c for n, c in core.items() if c[1] or c[0].ndim}
@@ -106,7 +100,7 @@ def ray_arrays(
 def _ignored_faces(ignore_face: ArrayLike | None, faces: int) -> NDArray[np.int32]:
     if ignore_face is None:
         return np.array(-1, np.int32)
-    array = np.asarray(ignore_face)
+    array = _arrays.array("ignore_face", ignore_face)
     if array.dtype.kind not in "iu":
         raise TypeError(f"ignore_face: expected integers, got dtype {array.dtype}")
     bad = (array < -1) | (array >= max(faces, 1))

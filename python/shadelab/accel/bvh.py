@@ -68,8 +68,10 @@ class BVH(PointQueries, Movable, Structure):
     (array([ 2., inf], dtype=float32), array([ 0, -1], dtype=int32), array([0.25, 0.  ], dtype=float32), array([0.5, 0. ], dtype=float32))
     """  # noqa: E501
 
+    _kernel = staticmethod(_kernels.build)
+
     def __init__(
         self, positions: ArrayLike, faces: ArrayLike, method: Method = "sah", *, progress: Progress = None
     ) -> None:
         _arrays.choice("method", method, ("sah", "median", "lbvh"))
-        self._build(positions, faces, _kernels.build, progress, method)
+        self._build(positions, faces, progress, method)

@@ -67,6 +67,9 @@ class UniformGrid(Structure):
     (2.0, 0)
     """
 
+    _kernel = staticmethod(_kernels.uniform_grid)
+    _resolution: Sequence[int]
+
     def __init__(
         self,
         positions: ArrayLike,
@@ -77,22 +80,21 @@ class UniformGrid(Structure):
         mailbox: bool = True,
         progress: Progress = None,
     ) -> None:
-        _arrays.number("cells_per_face", cells_per_face, above=0)
-        if resolution is not None:
-            if np.shape(resolution) != (3,):
-                raise ValueError(f"resolution: expected three numbers of cells, got {resolution}")
-            counts = [_arrays.count("resolution", n, 1, _MOST) for n in resolution]
-        else:
-            p, f = mesh_arrays(positions, faces)
+        density, remember = _arrays.number("cells_per_face", cells_per_face, above=0), _arrays.flag("mailbox", mailbox)
+        p, f = mesh_arrays(positions, faces)
+        if resolution is None:
             corners = p[f.reshape(-1)].astype(np.float64)
             extent = np.ptp(corners, axis=0) if len(corners) else np.zeros(3)
-            counts = _resolution(extent, cells_per_face * f.shape[0])
+            cells = _resolution(extent, density * f.shape[0])
+        else:
+            if _arrays.array("resolution", resolution).shape != (3,):
+                raise ValueError(f"resolution: expected three numbers of cells, got {resolution}")
+            cells = [_arrays.count("resolution", n, 1, _MOST) for n in resolution]
+        self._build(p, f, progress, cells, remember)
 
-        def build(p: Any, f: Any, callback: Any) -> Any:
-            tree, self._resolution = _kernels.uniform_grid(p, f, counts, bool(mailbox), callback)
-            return tree
-
-        self._build(positions, faces, build, progress)
+    def _build(self, positions: ArrayLike, faces: ArrayLike, progress: Progress, *options: Any) -> None:
+        super()._build(positions, faces, progress, *options)
+        self._tree, self._resolution = self._tree
 
     @property
     def resolution(self) -> tuple[int, int, int]:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterable, Sequence
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -79,16 +79,18 @@ class InstancedBVH:
     """
 
     def __init__(self, objects: Sequence[BVH], transforms: ArrayLike) -> None:
+        if isinstance(objects, np.ndarray) or not isinstance(objects, Iterable):
+            raise TypeError(f"objects: expected a sequence of BVHs, got {type(objects).__name__}")
         objects = tuple(objects)
-        m = _arrays.matrices("transforms", transforms, 4, np.float64)
-        m = m.reshape(-1, 4, 4) if m.size else m.reshape(0, 4, 4)
-        if len(m) != len(objects):
-            raise ValueError(f"transforms: expected {len(objects)}, one for each object, got {len(m)}")
         for i, bvh in enumerate(objects):
             if not isinstance(bvh, BVH):
                 raise TypeError(f"objects: expected BVHs, got {type(bvh).__name__} at {i}")
             if bvh.dtype != objects[0].dtype:
                 raise TypeError(f"objects: expected all of {objects[0].dtype}, got {bvh.dtype} at {i}")
+        m = _arrays.matrices("transforms", transforms, 4, np.float64)
+        m = m.reshape(-1, 4, 4) if m.size else m.reshape(0, 4, 4)
+        if len(m) != len(objects):
+            raise ValueError(f"transforms: expected {len(objects)}, one for each of objects, got {len(m)}")
         self._dtype = objects[0].dtype if objects else np.dtype(np.float64)
         self._objects, self._transforms = objects, m.copy()
         self._inverse = _inverses(self._transforms)

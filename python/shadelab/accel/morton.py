@@ -71,7 +71,7 @@ def morton_encode(
     array([613271772], dtype=uint32)
     """
     side = 1 << _axis_bits(bits)
-    array = np.asarray(points)
+    array = _arrays.array("points", points)
     if array.ndim == 0 or array.shape[-1] != 3:
         raise ValueError(f"points: expected shape (..., 3), got {array.shape}")
     if array.dtype.kind in "iu" and array.size:
@@ -154,19 +154,21 @@ def morton_decode(
            [3, 0, 0]], dtype=uint32)
     """
     side = 1 << _axis_bits(bits)
-    array = np.asarray(codes)
+    array = _arrays.array("codes", codes)
     if array.dtype.kind not in "iu" and array.size:
         raise TypeError(f"codes: expected integers, got dtype {array.dtype}")
     if array.size and (array.min() < 0 or int(array.max()) >= 1 << bits):
         raise ValueError(f"codes: expected codes in [0, 2**{bits}), got {array.min()} to {array.max()}")
+    corners = [None if c is None else _corner(n, c) for n, c in (("lower", lower), ("upper", upper))]
+    if (lower is None) != (upper is None):
+        raise ValueError("lower, upper: expected both corners of the box, or none")
     cells = np.empty((*array.shape, 3), np.uint64)
     _kernels.morton_decode(np.ascontiguousarray(array.astype(np.uint64)).reshape(-1), cells.reshape(-1, 3))
-    if (lower is None) != (upper is None):
-        raise ValueError(f"{'lower' if lower is None else 'upper'}: expected both corners of the box, or none")
-    if lower is None or upper is None:
+    least, most = corners
+    if least is None or most is None:
         return cells.astype(np.uint32) if bits == 30 else cells
     weight = (cells + 0.5) / side
-    return (1 - weight) * _corner("lower", lower) + weight * _corner("upper", upper)
+    return (1 - weight) * least + weight * most
 
 
 def radix_tree(codes: ArrayLike) -> RadixTree:
@@ -203,7 +205,7 @@ def radix_tree(codes: ArrayLike) -> RadixTree:
     >>> tree.left.tolist(), tree.right.tolist()
     ([3, 7, 9, 1, 11, 6, 12], [4, 8, 10, 2, 5, 14, 13])
     """
-    array = np.asarray(codes)
+    array = _arrays.array("codes", codes)
     if array.dtype.kind not in "iu":
         raise TypeError(f"codes: expected integers, got dtype {array.dtype}")
     if array.ndim != 1 or not 2 <= array.size < 2**30:

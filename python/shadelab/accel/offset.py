@@ -88,11 +88,9 @@ def offset_ray(
     shape, flat = _arrays.broadcast(core)
     arrays = dict(zip(core, flat, strict=True))
     result = _arrays.output("out", out, (*shape, 3), dtype)
+    arrays.setdefault("extent", extents.reshape(-1))
+    apart = dict(zip(arrays, _arrays.apart(result, *arrays.values()), strict=True))
     _kernels.offset_ray(
-        arrays["points"],
-        arrays["normals"],
-        arrays.get("directions"),
-        arrays.get("extent", extents.reshape(-1)),
-        result.reshape(-1, 3),
+        apart["points"], apart["normals"], apart.get("directions"), apart["extent"], result.reshape(-1, 3)
     )
     return result

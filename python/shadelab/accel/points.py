@@ -99,11 +99,10 @@ class PointQueries:
         """
         dtype = self._positions.dtype
         given: dict[str, tuple[Floats, int]] = {"points": (_arrays.vectors("points", points, 3, dtype), 1)}
-        limit = _arrays.floats("max_distance", max_distance, dtype)
+        limit = _arrays.knob_array("max_distance", max_distance, dtype)
         if limit.ndim:
             given["max_distance"] = (limit, 0)
-        elif np.isnan(limit):
-            raise ValueError("max_distance: expected a number, got nan")
+        full = _arrays.flag("full_output", full_output)
         brute = _arrays.choice("method", method, ("tree", "brute_force")) == "brute_force"
         shape, flat = _arrays.broadcast(given)
         limits = flat[1] if limit.ndim else limit.reshape(1)
@@ -112,7 +111,7 @@ class PointQueries:
         face, feature = np.empty(n, np.int32), np.empty(n, np.int32)
         callback = _arrays.progress_callback(progress, "closest_point")
         _kernels.closest_point(self._tree, flat[0], limits, [point, distance, face, u, v, feature], brute, callback)
-        results: list[Any] = [a.reshape(shape) for a in (distance, face, u, v, feature)[: 5 if full_output else 4]]
+        results: list[Any] = [a.reshape(shape) for a in (distance, face, u, v, feature)[: 5 if full else 4]]
         return ClosestPoint(point.reshape((*shape, 3)), *results)
 
     def winding_number(
@@ -178,8 +177,8 @@ class PointQueries:
         if error and moments is None:
             moments = self._moments = _kernels.Moments(self._tree)
         callback = _arrays.progress_callback(progress, "winding_number")
-        flat = [p.reshape(-1, 3), result.reshape(-1)]
-        _kernels.winding_number(self._tree, moments if error else None, error, *flat, callback)
+        (p,) = _arrays.apart(result, p.reshape(-1, 3))
+        _kernels.winding_number(self._tree, moments if error else None, error, p, result.reshape(-1), callback)
         return result
 
     def contains(self, points: ArrayLike, *, max_error: float = 0.01, progress: Progress = None) -> NDArray[np.bool_]:

@@ -4,13 +4,12 @@ from __future__ import annotations
 
 from typing import Literal
 
-import numpy as np
 from numpy.typing import ArrayLike
 
 from .. import _arrays
 from .._kernels import accel as _kernels
 from ._order import Order, order
-from ._rays import Progress
+from ._rays import Progress, mesh_arrays
 from ._structure import Structure
 
 __all__ = ["BSPTree", "KDTree", "Octree", "Order"]
@@ -57,6 +56,8 @@ class Octree(Structure):
     (2.0, 0)
     """
 
+    _kernel = staticmethod(_kernels.octree)
+
     def __init__(
         self,
         positions: ArrayLike,
@@ -67,7 +68,7 @@ class Octree(Structure):
         progress: Progress = None,
     ) -> None:
         size, depth = _arrays.count("leaf_size", leaf_size, 1, 2**27), _arrays.count("max_depth", max_depth, 0, 32)
-        self._build(positions, faces, _kernels.octree, progress, size, depth)
+        self._build(positions, faces, progress, size, depth)
 
     def order(self, eye: ArrayLike, *, front_to_back: bool = False) -> Order:
         """Faces by their distance from an eye, roughly: as cells come.
@@ -141,6 +142,8 @@ class KDTree(Structure):
     (2.0, 0)
     """
 
+    _kernel = staticmethod(_kernels.kd_tree)
+
     def __init__(
         self,
         positions: ArrayLike,
@@ -152,8 +155,8 @@ class KDTree(Structure):
         progress: Progress = None,
     ) -> None:
         _arrays.choice("method", method, ("sah", "median"))
-        size, depth = _arrays.count("leaf_size", leaf_size, 1, 2**27), _depth(max_depth, 8, 1.3, 96, np.shape(faces))
-        self._build(positions, faces, _kernels.kd_tree, progress, method, size, depth)
+        size, (p, f) = _arrays.count("leaf_size", leaf_size, 1, 2**27), mesh_arrays(positions, faces)
+        self._build(p, f, progress, method, size, _depth(max_depth, 8, 1.3, 96, len(f)))
 
 
 class BSPTree(Structure):
@@ -204,6 +207,8 @@ class BSPTree(Structure):
     (array([0, 1], dtype=int32), array([1, 0], dtype=int32))
     """
 
+    _kernel = staticmethod(_kernels.bsp_tree)
+
     def __init__(
         self,
         positions: ArrayLike,
@@ -217,8 +222,9 @@ class BSPTree(Structure):
         _arrays.choice("method", method, ("axis_aligned", "polygon_aligned"))
         polygon = method == "polygon_aligned"
         size = (1 if polygon else 8) if leaf_size is None else _arrays.count("leaf_size", leaf_size, 1, 2**27)
-        depth = _depth(max_depth, *((128, 0.0, 128) if polygon else (16, 2.0, 96)), np.shape(faces))
-        self._build(positions, faces, _kernels.bsp_tree, progress, method, size, depth)
+        p, f = mesh_arrays(positions, faces)
+        depth = _depth(max_depth, *((128, 0.0, 128) if polygon else (16, 2.0, 96)), len(f))
+        self._build(p, f, progress, method, size, depth)
 
     def order(self, eye: ArrayLike, *, front_to_back: bool = False) -> Order:
         """Faces, or fragments of them, by their distance from an eye.
@@ -252,7 +258,7 @@ class BSPTree(Structure):
         return order(self._tree, self.dtype, eye, front_to_back)
 
 
-def _depth(max_depth: int | None, least: int, more: float, most: int, faces: tuple[int, ...]) -> int:
+def _depth(max_depth: int | None, least: int, more: float, most: int, faces: int) -> int:
     if max_depth is not None:
         return _arrays.count("max_depth", max_depth, 0, most)
-    return int(least + more * (faces[0] if faces else 0).bit_length())
+    return int(least + more * faces.bit_length())

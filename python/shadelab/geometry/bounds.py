@@ -240,7 +240,7 @@ def bounding_kdop(points: ArrayLike, k: Literal[6, 14, 18, 26] = 26) -> Bounding
     >>> box.lower, box.upper
     (array([ 0.,  0.,  0.,  0., -1., -1., -1.]), array([1., 1., 1., 1., 1., 1., 1.]))
     """
-    if k not in (6, 14, 18, 26):
+    if _arrays.count("k", k) not in (6, 14, 18, 26):
         raise ValueError(f"k: expected one of 6, 14, 18, 26, got {k!r}")
     array = _sets(points)
     low, high = _bound(_kernels.bounding_kdop, array, [((k // 2,), array.dtype)] * 2, k)

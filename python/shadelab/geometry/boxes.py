@@ -87,7 +87,7 @@ def aabb_aabb(
     """
     given = aabb("a_", a_lower, a_upper) | aabb("b_", b_lower, b_upper)
     overlap = one(_kernels.aabb_aabb, given)
-    if not full_output:
+    if not _arrays.flag("full_output", full_output):
         return overlap
     return AxisGaps(overlap, one(_kernels.aabb_aabb_gaps, given, 3))
 
@@ -168,6 +168,6 @@ def obb_obb(
     (False, 0, 0.1, array([1., 0., 0.]))
     """
     given = obb("a_", a_center, a_axes, a_half_extents) | obb("b_", b_center, b_axes, b_half_extents)
-    if not full_output:
+    if not _arrays.flag("full_output", full_output):
         return one(_kernels.obb_obb, given)
     return Separation(*_arrays.elementwise(_kernels.obb_obb_separation, given, [BOOL, (0, np.int32), 0, 3]))

@@ -5,7 +5,7 @@ Results of varying length stand in arrays of a fixed number of slots, NaN behind
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Collection, Sequence
 from typing import Any, Literal, NamedTuple, overload
 
 import numpy as np
@@ -136,14 +136,15 @@ def clip_segment(
     """
     _arrays.choice("method", method, _METHODS)
     named = {"start": start, "end": end, "lower": lower, "upper": upper}
-    n = np.shape(start)[-1] if np.ndim(start) else 0
+    shape = _arrays.array("start", start).shape
+    n = shape[-1] if shape else 0
     if n not in (2, 3):
-        raise ValueError(f"start: expected shape (..., 2) or (..., 3), got {np.shape(start)}")
+        raise ValueError(f"start: expected shape (..., 2) or (..., 3), got {shape}")
     kernel = _kernels.clip_segment_2 if n == 2 else _kernels.clip_segment_3
     given = {name: (value, n) for name, value in named.items()}
     outputs: list[int | tuple[int, Any]] = [(0, np.bool_), n, n, 2, (2, np.uint8)]
     found = SegmentClipping(*_arrays.elementwise(kernel, given, outputs, method))
-    return found if full_output else ClippedSegment(*found[:3])
+    return found if _arrays.flag("full_output", full_output) else ClippedSegment(*found[:3])
 
 
 def _fill(slots: int, write: Callable[[int], tuple[Any, NDArray[np.int32]]]) -> tuple[Any, NDArray[np.int32]]:
@@ -278,6 +279,8 @@ def clip_homogeneous(
     """
     _arrays.choice("depth", depth, _DEPTHS)
     wanted = 0
+    if isinstance(borders, str | np.ndarray) or not isinstance(borders, Collection):
+        raise TypeError(f"borders: expected a sequence of names, got {type(borders).__name__}")
     for border in borders:
         wanted |= 1 << _BORDERS.index(_arrays.choice("borders", border, _BORDERS))
     dtype = _arrays.result_dtype(polygon=polygon, attributes=attributes)
@@ -303,4 +306,4 @@ def clip_homogeneous(
     out, count = _fill(n + wanted.bit_count(), write)
     count = np.maximum(count, np.int32(0))
     left = None if attributes is None else out[..., 4:]
-    return ClippedPolygon(out[..., :4], count, left, codes if full_output else None)
+    return ClippedPolygon(out[..., :4], count, left, codes if _arrays.flag("full_output", full_output) else None)

@@ -43,7 +43,7 @@ def _planes(planes: ArrayLike) -> tuple[ArrayLike, int]:
 
 def _sides(kernel: Any, given: dict[str, tuple[ArrayLike, int]], full_output: bool) -> Sides | FrustumSide:
     result = FrustumSide(*_arrays.elementwise(kernel, given, [(0, np.int8), (0, np.int32)]))
-    return result if full_output else result.side
+    return result if _arrays.flag("full_output", full_output) else result.side
 
 
 def frustum_planes(matrix: ArrayLike, depth: Literal["standard", "zero_to_one", "reversed"] = "standard") -> Floats:

@@ -15,6 +15,7 @@ from .._kernels import geometry as _kernels
 __all__ = ["ImplicitHit", "quadric_polynomial", "ray_implicit", "torus_polynomial"]
 
 Field = Callable[[Any], Any]
+_MOST_SAMPLES = 1_000_000
 
 
 class ImplicitHit(NamedTuple):
@@ -153,7 +154,8 @@ def ray_implicit(
     t_min, t_max : float or array_like, shape (...)
         Hits lie in the open interval, in units of the direction's length. With a callable `t_max` must be finite.
     samples : int
-        With a callable: steps of equal length in which the interval is searched for a change of sign.
+        With a callable: steps of equal length in which the interval is searched for a change of sign; a million at
+        most.
     lipschitz : float, optional
         With a callable: a bound of its slope, at any point and direction (1 for a distance). The ray then advances by
         `|value| / lipschitz`, and no root can be stepped over; `samples` is the largest number of steps.
@@ -208,24 +210,21 @@ def ray_implicit(
     """
     dtype = _arrays.result_dtype(origins=origins, directions=directions)
     core = {n: (_arrays.vectors(n, v, 3, dtype), 1) for n, v in (("origins", origins), ("directions", directions))}
-    for name, value in (("t_min", t_min), ("t_max", t_max)):
-        array = _arrays.floats(name, value, dtype)
-        if array.ndim == 0 and np.isnan(array):
-            raise ValueError(f"{name}: expected a number, got nan")
-        core[name] = (array, 0)
+    core |= {n: (_arrays.knob_array(n, v, dtype), 0) for n, v in (("t_min", t_min), ("t_max", t_max))}
     shape, rays = _arrays.broadcast(core)
-    n = rays[2].shape[0]
+    n, full = rays[2].shape[0], _arrays.flag("full_output", full_output)
     found = (np.empty(n, dtype), np.empty((n, 3), dtype), np.empty(n, dtype), np.zeros(n, np.int32))
     if callable(surface):
-        steps = _arrays.count("samples", samples, 1)
+        steps = _arrays.count("samples", samples, 1, _MOST_SAMPLES)
         bound = None if lipschitz is None else _arrays.number("lipschitz", lipschitz, above=0)
-        if np.isinf(rays[2]).any() or np.isinf(rays[3]).any():
-            raise ValueError("t_max: expected finite intervals with a callable, got infinite ones")
-        _search(_Along(surface, rays[0], rays[1]), rays[2], rays[3], steps, bound, found, full_output)
+        for name, limits in (("t_min", rays[2]), ("t_max", rays[3])):
+            if np.isinf(limits).any():
+                raise ValueError(f"{name}: expected finite intervals with a callable surface, got infinite ones")
+        _search(_Along(surface, rays[0], rays[1]), rays[2], rays[3], steps, bound, found, full)
     else:
         _kernels.ray_implicit(*_polynomial(surface), rays, list(found))
     t, normal, value, crossings = found
-    if not full_output:
+    if not full:
         return t.reshape(shape)
     return ImplicitHit(t.reshape(shape), normal.reshape((*shape, 3)), value.reshape(shape), crossings.reshape(shape))
 
@@ -250,7 +249,7 @@ class _Along:
         self.surface, self.origins, self.directions = surface, origins, directions
 
     def at(self, points: Floats) -> Floats:
-        values = np.asarray(self.surface(points))
+        values = _arrays.array("surface", self.surface(points))
         if values.shape != points.shape[:1]:
             n = points.shape[0]
             raise ValueError(f"surface: expected {n} values for points {points.shape}, got {values.shape}")

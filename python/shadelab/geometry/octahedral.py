@@ -91,7 +91,7 @@ def octahedral_decode(codes: ArrayLike, bits: int | None = None, *, dtype: DType
         Points of the square, or with `bits` integers.
     bits : int, optional
         Bits of each integer, 2 to 24.
-    dtype : dtype
+    dtype : {float32, float64}
         Precision in which integers are decoded; points of the square are in their own.
 
     Returns
@@ -103,7 +103,7 @@ def octahedral_decode(codes: ArrayLike, bits: int | None = None, *, dtype: DType
     ------
     TypeError, ValueError
         If the codes are not of two components, are integers without `bits` or numbers with fractions with them, or
-        `bits` is out of its domain.
+        `bits` or `dtype` is out of its domain.
 
     Notes
     -----
@@ -120,7 +120,7 @@ def octahedral_decode(codes: ArrayLike, bits: int | None = None, *, dtype: DType
     array([[ 0.,  0.,  1.],
            [ 0.,  0., -1.]], dtype=float32)
     """
-    array = np.asarray(codes)
+    array, kind = _arrays.array("codes", codes), _arrays.precision("dtype", dtype)
     if bits is None:
         if array.dtype.kind in "iub" and isinstance(codes, np.ndarray):
             raise TypeError(f"codes: expected bits= with integers, got dtype {array.dtype}")
@@ -128,5 +128,5 @@ def octahedral_decode(codes: ArrayLike, bits: int | None = None, *, dtype: DType
     if array.dtype.kind not in "iu":
         raise TypeError(f"codes: expected integers with bits=, got dtype {array.dtype}")
     scale = float(2 ** (_arrays.count("bits", bits, 2, 24) - 1) - 1)
-    given = {"codes": (_arrays.floats("codes", array, dtype), 2)}
+    given = {"codes": (_arrays.floats("codes", array, kind), 2)}
     return _arrays.elementwise(_kernels.octahedral_decode, given, [3], scale)[0]

@@ -77,7 +77,7 @@ def three_planes(a: ArrayLike, b: ArrayLike, c: ArrayLike, *, full_output: bool 
     """
     given: Given = {"a": (a, 4), "b": (b, 4), "c": (c, 4)}
     result = PlanesPoint(*_arrays.elementwise(_kernels.three_planes, given, [3, 0]))
-    return result if full_output else result.point
+    return result if _arrays.flag("full_output", full_output) else result.point
 
 
 @overload
@@ -126,7 +126,7 @@ def plane_aabb(
     """
     given = {"plane": (plane, 4), **aabb("", lower, upper)}
     side = one(_kernels.plane_aabb, given, (0, np.int8))
-    if not full_output:
+    if not _arrays.flag("full_output", full_output):
         return side
     return PlaneSide(side, *_arrays.elementwise(_kernels.plane_aabb_interval, given, [0, 0]))
 
@@ -188,6 +188,6 @@ def plane_obb(
     """
     given = {"plane": (plane, 4), **obb("", center, axes, half_extents)}
     side = one(_kernels.plane_obb, given, (0, np.int8))
-    if not full_output:
+    if not _arrays.flag("full_output", full_output):
         return side
     return PlaneSide(side, *_arrays.elementwise(_kernels.plane_obb_interval, given, [0, 0]))

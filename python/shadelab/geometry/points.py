@@ -93,7 +93,7 @@ def perspective_barycentric(weights: ArrayLike, w: ArrayLike, *, inverse: bool =
     array([0.75, 0.25, 0.  ])
     """
     given = {"weights": (weights, 3), "w": (w, 3)}
-    return _arrays.elementwise(_kernels.perspective_barycentric, given, [3], bool(inverse))[0]
+    return _arrays.elementwise(_kernels.perspective_barycentric, given, [3], _arrays.flag("inverse", inverse))[0]
 
 
 class ClosestPoint(NamedTuple):
@@ -160,4 +160,4 @@ def closest_point_triangle(
     given = {"points": (points, 3), "a": (a, 3), "b": (b, 3), "c": (c, 3)}
     out: list[int | tuple[int, type]] = [3, 0, 3, (0, np.int8)]
     found = ClosestPoint(*_arrays.elementwise(_kernels.closest_point_triangle, given, out))
-    return found if full_output else found.point
+    return found if _arrays.flag("full_output", full_output) else found.point

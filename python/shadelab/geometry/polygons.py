@@ -136,9 +136,9 @@ def point_in_polygon(
     found: list[NDArray[Any]] = [np.empty(shape, kind) for kind in kinds]
     _kernels.point_in_polygon(rule, corners.shape[-2], flat, [x.reshape(-1) for x in found])
     place = PolygonPlace(*found)
-    if border:
+    if _arrays.flag("border", border):
         np.logical_or(place.inside, place.on_border, out=place.inside)
-    return place if full_output else place.inside
+    return place if _arrays.flag("full_output", full_output) else place.inside
 
 
 @overload
@@ -223,17 +223,13 @@ def ray_polygon(
     _arrays.choice("rule", rule, ("even_odd", "winding"))
     dtype = _arrays.result_dtype(origins=origins, directions=directions, polygon=polygon)
     core = {n: (_arrays.vectors(n, v, 3, dtype), 1) for n, v in (("origins", origins), ("directions", directions))}
-    for name, value in (("t_min", t_min), ("t_max", t_max)):
-        array = _arrays.floats(name, value, dtype)
-        if array.ndim == 0 and np.isnan(array):
-            raise ValueError(f"{name}: expected a number, got nan")
-        core[name] = (array, 0)
+    core |= {n: (_arrays.knob_array(n, v, dtype), 0) for n, v in (("t_min", t_min), ("t_max", t_max))}
     corners = _corners("polygon", polygon, 3, dtype)
     shape, flat = _with_polygons(core, corners)
     kinds = (dtype, (dtype, 3), np.bool_, np.int32, np.int32)
     found: list[NDArray[Any]] = [np.empty(shape, kind) for kind in kinds]
     _kernels.ray_polygon(rule, corners.shape[-2], flat, [x.reshape(-1) for x in found])
-    return PolygonHit(*found) if full_output else found[0]
+    return PolygonHit(*found) if _arrays.flag("full_output", full_output) else found[0]
 
 
 def signed_area(polygon: ArrayLike) -> Floats:
@@ -314,7 +310,7 @@ def sort_by_angle(points: ArrayLike, center: ArrayLike = (0.0, 0.0)) -> NDArray[
     array([3, 2, 1, 0])
     """
     dtype = _arrays.result_dtype(points=points, center=center)
-    sets = _corners("points", points, 2, dtype) if np.size(points) else _arrays.vectors("points", points, 2, dtype)
+    sets = _arrays.vectors("points", points, 2, dtype)
     if sets.ndim < 2:
         raise ValueError(f"points: expected shape (..., n, 2), got {sets.shape}")
     centers = _arrays.vectors("center", center, 2, dtype)

@@ -140,9 +140,10 @@ def ray_aabb(
     _arrays.choice("method", method, ("exact", "conservative", "slabs"))
     given = {"origins": (origins, 3), "directions": (directions, 3), "lower": (lower, 3), "upper": (upper, 3)}
     knobs = {"t_min": t_min, "t_max": t_max}
-    out = _SLABS if full_output else _SLABS[:3]
-    found = _arrays.elementwise(_kernels.ray_aabb, given, out, method, bool(full_output), knobs=knobs)
-    return _details(found) if full_output else BoxHit(*found)
+    full = _arrays.flag("full_output", full_output)
+    out = _SLABS if full else _SLABS[:3]
+    found = _arrays.elementwise(_kernels.ray_aabb, given, out, method, full, knobs=knobs)
+    return _details(found) if full else BoxHit(*found)
 
 
 @overload
@@ -234,6 +235,7 @@ def ray_obb(
         "half_extents": (half_extents, 3),
     }
     knobs = {"t_min": t_min, "t_max": t_max}
-    out = _SLABS if full_output else _SLABS[:3]
-    found = _arrays.elementwise(_kernels.ray_obb, given, out, bool(full_output), knobs=knobs)
-    return _details(found) if full_output else BoxHit(*found)
+    full = _arrays.flag("full_output", full_output)
+    out = _SLABS if full else _SLABS[:3]
+    found = _arrays.elementwise(_kernels.ray_obb, given, out, full, knobs=knobs)
+    return _details(found) if full else BoxHit(*found)

@@ -217,9 +217,10 @@ def ray_sphere(
     _arrays.choice("method", method, ("robust", "quadratic", "geometric"))
     given = {"origins": (origins, 3), "directions": (directions, 3), "centers": (centers, 3), "radii": (radii, 0)}
     knobs = {"t_min": t_min, "t_max": t_max}
-    out = [0] * (6 if full_output else 3)
-    found = _arrays.elementwise(_kernels.ray_sphere, given, out, method, bool(full_output), knobs=knobs)
-    return SphereDetails(*found) if full_output else SphereHit(*found)
+    full = _arrays.flag("full_output", full_output)
+    out = [0] * (6 if full else 3)
+    found = _arrays.elementwise(_kernels.ray_sphere, given, out, method, full, knobs=knobs)
+    return SphereDetails(*found) if full else SphereHit(*found)
 
 
 class PlaneDetails(NamedTuple):
@@ -306,6 +307,7 @@ def ray_plane(
     """
     given = {"origins": (origins, 3), "directions": (directions, 3), "planes": (planes, 4)}
     knobs = {"t_min": t_min, "t_max": t_max}
-    out = [0] * (4 if full_output else 1)
-    found = _arrays.elementwise(_kernels.ray_plane, given, out, bool(full_output), knobs=knobs)
-    return PlaneDetails(*found) if full_output else found[0]
+    full = _arrays.flag("full_output", full_output)
+    out = [0] * (4 if full else 1)
+    found = _arrays.elementwise(_kernels.ray_plane, given, out, full, knobs=knobs)
+    return PlaneDetails(*found) if full else found[0]

@@ -83,7 +83,7 @@ def sphere_sphere(
         "b_radius": (b_radius, 0),
     }
     overlap = one(_kernels.sphere_sphere, given)
-    if not full_output:
+    if not _arrays.flag("full_output", full_output):
         return overlap
     dtype = _arrays.result_dtype(**{n: v for n, (v, _) in given.items()})
     a, b = (_arrays.floats(n, v, dtype) for n, v in (("a_center", a_center), ("b_center", b_center)))
@@ -145,7 +145,7 @@ def sphere_aabb(
     """
     box = aabb("", lower, upper)
     overlap = one(_kernels.sphere_aabb, {"center": (center, 3), "radius": (radius, 0), **box})
-    if not full_output:
+    if not _arrays.flag("full_output", full_output):
         return overlap
     point = one(_kernels.sphere_aabb_nearest, {"center": (center, 3), **box}, 3)
     return _contact(overlap, center, radius, point)
@@ -215,7 +215,7 @@ def sphere_triangle(
     """
     ball: Given = {"center": (center, 3), "radius": (radius, 0)}
     overlap = one(_kernels.sphere_triangle, {**ball, "a": (a, 3), "b": (b, 3), "c": (c, 3)})
-    if not full_output:
+    if not _arrays.flag("full_output", full_output):
         return overlap
     nearest = closest_point_triangle(center, a, b, c, full_output=True)
     return Contact(overlap, nearest.point, nearest.distance)

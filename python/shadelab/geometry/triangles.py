@@ -101,7 +101,7 @@ def triangle_aabb(
     given: Given = {"a": (a, 3), "b": (b, 3), "c": (c, 3), **aabb("", lower, upper)}
     axis = one(_kernels.triangle_aabb, given, (0, np.int32))
     overlap = axis == -1
-    return TriangleBox(overlap, np.maximum(axis, np.int32(-1))) if full_output else overlap
+    return TriangleBox(overlap, np.maximum(axis, np.int32(-1))) if _arrays.flag("full_output", full_output) else overlap
 
 
 @overload
@@ -163,7 +163,7 @@ def polygon_aabb(
     by = np.empty(shape, np.int8)
     _kernels.polygon_aabb(corners.shape[-2], flat, by)
     overlap = np.asarray(by > 0)
-    return PolygonBox(overlap, by) if full_output else overlap
+    return PolygonBox(overlap, by) if _arrays.flag("full_output", full_output) else overlap
 
 
 @overload
@@ -239,6 +239,6 @@ def triangle_triangle(
     (True, False, array([1., 1., 0.]), array([1., 0., 0.]))
     """
     given: Given = {"a0": (a0, 3), "a1": (a1, 3), "a2": (a2, 3), "b0": (b0, 3), "b1": (b1, 3), "b2": (b2, 3)}
-    if not full_output:
+    if not _arrays.flag("full_output", full_output):
         return one(_kernels.triangle_triangle, given)
     return TrianglesMeeting(*_arrays.elementwise(_kernels.triangle_triangle_segment, given, [BOOL, BOOL, 3, 3]))

@@ -62,13 +62,14 @@ def scale(factors: ArrayLike) -> Floats:
     >>> scale(2.0) @ [1, 2, 3, 1]
     array([2., 4., 6., 1.])
     """
-    if np.ndim(factors) == 0:
-        factors = np.repeat(_arrays.floats("factors", factors).reshape(1), 3)
+    given = _arrays.floats("factors", factors)
+    if given.ndim == 0:
+        factors = np.repeat(given.reshape(1), 3)
     return _vectors("factors", factors, _kernels.scale, _kernels.scale_2d)
 
 
 def _vectors(name: str, value: ArrayLike, space: Callable[..., None], plane: Callable[..., None]) -> Floats:
-    if np.shape(value)[-1:] == (2,):
+    if _arrays.array(name, value).shape[-1:] == (2,):
         return _arrays.elementwise(plane, {name: (value, 2)}, [(3, 3)])[0]
     return _arrays.elementwise(space, {name: (value, 3)}, [(4, 4)])[0]
 

@@ -89,7 +89,8 @@ def transform_points(
     >>> transform_points([1.0, 0, 0], translate([0, 5, 0]))
     array([1., 5., 0.])
     """
-    return _transform("points", points, matrix, "homogeneous" if homogeneous else "point", out)
+    kind = "homogeneous" if _arrays.flag("homogeneous", homogeneous) else "point"
+    return _transform("points", points, matrix, kind, out)
 
 
 def transform_vectors(vectors: ArrayLike, matrix: ArrayLike, *, out: NDArray[Any] | None = None) -> Floats:
@@ -159,7 +160,9 @@ def _pair(
 ) -> tuple[tuple[int, ...], Floats, Floats]:
     """The batch shape, items (count, n) and their matrices (1 or count, n + 1, n + 1)."""
     items = _arrays.vectors(name, given, n)
-    m = _arrays.matrices("matrix", matrix, n + 1, items.dtype if dtype is None else dtype)
+    m = _arrays.floats("matrix", matrix, items.dtype if dtype is None else dtype)
+    if m.shape[-2:] != (n + 1, n + 1):
+        raise ValueError(f"matrix: expected shape (..., {n + 1}, {n + 1}) for {name} of {n} components, got {m.shape}")
     if m.ndim == 2:
         return items.shape[:-1], items.reshape(-1, n), m[None]
     shape, (flat, many) = _arrays.broadcast({name: (items, 1), "matrix": (m, 2)})
@@ -167,9 +170,10 @@ def _pair(
 
 
 def _transform(name: str, given: ArrayLike, matrix: ArrayLike, kind: str, out: NDArray[Any] | None) -> Floats:
-    n = 2 if kind != "normal" and np.shape(given)[-1:] == (2,) else 3
+    n = 2 if kind != "normal" and _arrays.array(name, given).shape[-1:] == (2,) else 3
     shape, flat, m = _pair(name, given, matrix, n)
     result = _arrays.output("out", out, (*shape, n + (kind == "homogeneous")), flat.dtype)
+    flat, m = _arrays.apart(result, flat, m)
     (_kernels.transform if n == 3 else _kernels.transform_2d)(kind, flat, m, result)
     return result
 
@@ -211,6 +215,7 @@ def project(points: ArrayLike, matrix: ArrayLike, size: tuple[int, int], *, out:
     """
     shape, flat, m = _pair("points", points, matrix, 3)
     result = _arrays.output("out", out, (*shape, 3), flat.dtype)
+    flat, m = _arrays.apart(result, flat, m)
     _kernels.project(flat, m, picture_size(size), result)
     return result
 
@@ -254,5 +259,6 @@ def unproject(
     """
     shape, flat, m = _pair("pixels", pixels, matrix, 3, np.float64)
     result = _arrays.output("out", out, (*shape, 3), flat.dtype)
+    flat, m = _arrays.apart(result, flat, m)
     _kernels.unproject(flat, m, picture_size(size), result)
     return result

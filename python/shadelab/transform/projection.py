@@ -188,7 +188,7 @@ def linear_depth(depth: ArrayLike, projection: ArrayLike, *, out: NDArray[Any] |
     if m.ndim != 2:
         raise ValueError(f"projection: expected shape (4, 4), got {m.shape}")
     result = _arrays.output("out", out, d.shape, d.dtype)
-    _kernels.linear_depth(m[2:, 2:].tolist(), [d], [result])
+    _kernels.linear_depth(m[2:, 2:].tolist(), list(_arrays.apart(result, d)), [result])
     return result
 
 

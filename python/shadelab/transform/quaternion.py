@@ -219,7 +219,7 @@ def quaternion_slerp(a: ArrayLike, b: ArrayLike, t: ArrayLike, *, shortest: bool
     array([0.      , 0.      , 0.124675, 0.992198])
     """
     given = {"a": (a, 4), "b": (b, 4), "t": (t, 0)}
-    return _arrays.elementwise(_kernels.quaternion_slerp, given, [4], bool(shortest))[0]
+    return _arrays.elementwise(_kernels.quaternion_slerp, given, [4], _arrays.flag("shortest", shortest))[0]
 
 
 def quaternion_to_matrix(q: ArrayLike) -> Floats:

@@ -301,13 +301,12 @@ def euler_angles(matrix: ArrayLike, order: str = "XYZ", *, full_output: bool = F
     given = {"matrix": (m, (3, 3))}
     found = EulerAngles(*_arrays.elementwise(_kernels.euler_angles, given, [3, (0, np.bool_)], _order(order)))
     refuse("matrix", m, found.angles, "a rotation: orthonormal to 1e-3, not mirrored")
-    return found if full_output else found.angles
+    return found if _arrays.flag("full_output", full_output) else found.angles
 
 
 def rotations(name: str, value: ArrayLike) -> Floats:
     """The linear part of 4 by 4 matrices, or 3 by 3 matrices as they are."""
-    if np.shape(value)[-2:] == (4, 4):
-        return _arrays.matrices(name, value)[..., :3, :3]
-    if np.shape(value)[-2:] != (3, 3):
-        raise ValueError(f"{name}: expected shape (..., 4, 4) or (..., 3, 3), got {np.shape(value)}")
-    return _arrays.matrices(name, value, 3)
+    m = _arrays.floats(name, value)
+    if m.shape[-2:] not in ((3, 3), (4, 4)):
+        raise ValueError(f"{name}: expected shape (..., 4, 4) or (..., 3, 3), got {m.shape}")
+    return m[..., :3, :3]

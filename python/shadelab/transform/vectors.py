@@ -133,4 +133,4 @@ def project_onto(vectors: ArrayLike, onto: ArrayLike, *, full_output: bool = Fal
     """
     given = {"vectors": (vectors, 3), "onto": (onto, 3)}
     parts = Projection(*_arrays.elementwise(_kernels.project_onto, given, [0, 3, 3]))
-    return parts if full_output else parts.parallel
+    return parts if _arrays.flag("full_output", full_output) else parts.parallel

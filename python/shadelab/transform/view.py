@@ -149,14 +149,17 @@ def viewport(size: tuple[int, int], origin: tuple[float, float] = (0.0, 0.0)) ->
     Raises
     ------
     TypeError, ValueError
-        If the size is not of two positive integers.
+        If the size is not of two positive integers, or the origin not of two finite numbers.
 
     Examples
     --------
     >>> viewport((640, 480)) @ [-1, 1, 0.25, 1]
     array([0.  , 0.  , 0.25, 1.  ])
     """
-    return np.array(_kernels.viewport(picture_size(size), [_arrays.number("origin", x) for x in origin]))
+    corner = _arrays.vectors("origin", origin, 2, np.float64)
+    if corner.shape != (2,) or not np.isfinite(corner).all():
+        raise ValueError(f"origin: expected two finite numbers, got {origin!r}")
+    return np.array(_kernels.viewport(picture_size(size), corner.tolist()))
 
 
 def picture_size(size: tuple[int, int]) -> list[float]:
