@@ -19,6 +19,7 @@ pub mod mesh;
 pub mod accel;
 pub mod brdf;
 pub mod light;
+pub mod environment;
 pub mod raster;
 pub mod pathtrace;
 pub mod shadow;

@@ -20,7 +20,9 @@ accel
 brdf
     Reflection models: evaluation, sampling, density.
 light
-    Point, directional and rectangular lights: irradiance, sampling, unshadowed radiance.
+    Punctual and area lights: irradiance in closed form, sampling, unshadowed radiance.
+environment
+    Light from all around: panoramas, looked up and drawn from by importance.
 scene
     Scenes, cameras, materials, instances; loading and saving.
 raster
@@ -47,6 +49,7 @@ if TYPE_CHECKING:
         accel,
         brdf,
         color,
+        environment,
         geometry,
         image,
         light,
@@ -67,6 +70,7 @@ __all__ = [
     "accel",
     "brdf",
     "color",
+    "environment",
     "geometry",
     "image",
     "light",

@@ -18,6 +18,7 @@ from . import mesh as _mesh
 from ._arrays import Floats
 from ._models import load, load_mesh
 from ._pictures import load_image, save_image
+from .environment import Environment
 from .mesh import Mesh
 
 __all__ = [
@@ -334,11 +335,14 @@ class Scene:
         None fits one to the scene.
     background : three floats
         Radiance from everywhere that is not hit, in W/(m² sr).
+    environment : Environment, optional
+        A panorama of that radiance instead; see `shadelab.environment`.
 
     Raises
     ------
     TypeError, ValueError
-        If something is not an instance or mesh or light, or no mesh has a face and there is no camera.
+        If something is not an instance or mesh or light, no mesh has a face and there is no camera, or both a
+        background and an environment are given.
 
     Examples
     --------
@@ -352,6 +356,7 @@ class Scene:
     lights: Any = ()
     camera: Any = None
     background: Vector = (0.0, 0.0, 0.0)
+    environment: Environment | None = None
 
     def __post_init__(self) -> None:
         set_ = object.__setattr__
@@ -367,6 +372,11 @@ class Scene:
                 raise TypeError(f"lights: expected lights, got {type(light).__name__}")
         set_(self, "lights", lights)
         set_(self, "background", _triple("background", self.background, 0))
+        if self.environment is not None:
+            if not isinstance(self.environment, Environment):
+                raise TypeError(f"environment: expected an Environment, got {type(self.environment).__name__}")
+            if any(self.background):
+                raise ValueError("background: expected none beside an environment, got both")
         if self.camera is None:
             set_(self, "camera", fit_camera(self.bounds))
         elif not isinstance(self.camera, Camera):

@@ -1,33 +1,55 @@
 //! Punctual and area lights: what they send, where to look for them, and what arrives without obstacles.
 //!
-//! - [`rect`]: points on rectangles, their densities, rays that meet them
+//! - [`sample`]: points on lights as seen from elsewhere, their densities, rays that meet them
 //! - [`polygon`]: light from a polygon in closed form: solid angle, irradiance, higher moments of the cosine
 //! - [`irradiance`]: of each light, in closed form
 //! - [`unshadowed`]: the radiance that surfaces reflect, nothing in between
+//!
+//! The lights themselves: [`rect`], [`disk`], [`sphere`], [`polygon_light`], [`spot`]; [`circle`] has the closed forms
+//! of disks and spheres.
 
+pub(crate) mod circle;
+pub(crate) mod disk;
+mod flat;
 pub mod irradiance;
 pub mod polygon;
-pub mod rect;
+pub(crate) mod polygon_light;
+pub(crate) mod rect;
+pub mod sample;
+pub(crate) mod sphere;
+pub(crate) mod spot;
 pub mod unshadowed;
 
 use crate::real::Real;
 use crate::vec::Vec3;
+use disk::Disk;
+use polygon_light::PolygonLight;
 use rect::Rect;
+use sphere::Sphere;
+use spot::Spot;
 
 /// A light, per colour channel.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Debug)]
 pub enum Light<T> {
     /// Radiant intensity in W/sr.
     Point {
         position: Vec3<T>,
         intensity: Vec3<T>,
     },
+    Spot(Spot<T>),
     /// Irradiance in W/m² on a plane that faces the light; `direction` is the unit vector in which it travels.
     Directional {
         direction: Vec3<T>,
         irradiance: Vec3<T>,
     },
     Rect(Rect<T>),
+    Disk(Disk<T>),
+    Sphere(Sphere<T>),
+    Polygon(PolygonLight<T>),
+    /// The same radiance from every direction, W/(m² sr).
+    Ambient {
+        radiance: Vec3<T>,
+    },
 }
 
 /// Light that arrives at a point from one direction: a punctual light.
@@ -41,26 +63,127 @@ pub struct Beam<T> {
     pub irradiance: Vec3<T>,
 }
 
+/// A point on a light as seen from elsewhere.
+#[derive(Clone, Copy, Debug)]
+pub struct Sighting<T> {
+    /// Unit, towards the light.
+    pub wi: Vec3<T>,
+    /// Infinite for ambient light.
+    pub distance: T,
+    /// Per solid angle, of drawing this direction.
+    pub pdf: T,
+}
+
+/// What one draw from a light brings: [`Light::sample`].
+#[derive(Clone, Copy, Debug)]
+pub struct Arrival<T> {
+    /// Unit, towards the light.
+    pub wi: Vec3<T>,
+    pub distance: T,
+    /// Radiance over density; of a beam, its irradiance on a plane that faces it.
+    pub value: Vec3<T>,
+    /// Per solid angle; infinite for a beam, which no other draw finds.
+    pub pdf: T,
+}
+
 impl<T: Real> Light<T> {
     /// What a punctual light sends to `point`; none from area lights, or from a light at the point itself.
     #[inline(always)]
     pub fn beam(&self, point: Vec3<T>) -> Option<Beam<T>> {
-        match *self {
-            Light::Point { position, intensity } => {
-                let to = position - point;
-                if to == Vec3::splat(T::zero()) {
-                    return None;
-                }
-                let wi = to.normalize();
-                let distance = to.dot(wi);
-                // In two steps: the square of a large distance overflows before the quotient vanishes.
-                let irradiance = intensity.map(|i| i / distance / distance);
-                Some(Beam { wi, distance, irradiance })
+        match self {
+            Light::Point { position, intensity } => from_point(*position, *intensity, point),
+            Light::Spot(spot) => {
+                let beam = from_point(spot.position, spot.intensity, point)?;
+                let share = spot.falloff(-beam.wi);
+                // NaN goes on.
+                (share != T::zero()).then(|| Beam { irradiance: beam.irradiance * share, ..beam })
             }
             Light::Directional { direction, irradiance } => {
-                Some(Beam { wi: -direction, distance: T::INFINITY, irradiance })
+                Some(Beam { wi: -*direction, distance: T::INFINITY, irradiance: *irradiance })
             }
-            Light::Rect(_) => None,
+            _ => None,
         }
     }
+
+    /// Whether it comes from more than one direction, so that there is something to draw.
+    #[inline(always)]
+    pub fn has_area(&self) -> bool {
+        !matches!(self, Light::Point { .. } | Light::Spot(_) | Light::Directional { .. })
+    }
+
+    /// W/(m² sr) of an area light; zero of a punctual one.
+    #[inline(always)]
+    pub fn radiance(&self) -> Vec3<T> {
+        match self {
+            Light::Rect(l) => l.radiance,
+            Light::Disk(l) => l.radiance,
+            Light::Sphere(l) => l.radiance,
+            Light::Polygon(l) => l.radiance,
+            Light::Ambient { radiance } => *radiance,
+            _ => Vec3::splat(T::zero()),
+        }
+    }
+
+    /// A direction towards an area light, for a point of the unit square; None from where the drawn point does not
+    /// shine, and for punctual lights.
+    #[inline(always)]
+    pub fn sight(&self, from: Vec3<T>, u: [T; 2]) -> Option<Sighting<T>> {
+        match self {
+            Light::Rect(l) => l.sample(from, u),
+            Light::Disk(l) => l.sample(from, u),
+            Light::Sphere(l) => l.sample(from, u),
+            Light::Polygon(l) => l.sample(from, u),
+            Light::Ambient { .. } => Some(everywhere(sample::anywhere(u))),
+            _ => None,
+        }
+    }
+
+    /// Where a ray with unit direction meets an area light that shines against it, with the density of [`Light::sight`].
+    #[inline(always)]
+    pub fn meet(&self, from: Vec3<T>, wi: Vec3<T>) -> Option<Sighting<T>> {
+        match self {
+            Light::Rect(l) => l.meet(from, wi),
+            Light::Disk(l) => l.meet(from, wi),
+            Light::Sphere(l) => l.meet(from, wi),
+            Light::Polygon(l) => l.meet(from, wi),
+            Light::Ambient { .. } => Some(everywhere(wi)),
+            _ => None,
+        }
+    }
+
+    /// The density of [`Light::sight`] per solid angle, zero where a ray misses.
+    #[inline(always)]
+    pub fn pdf(&self, from: Vec3<T>, wi: Vec3<T>) -> T {
+        self.meet(from, wi).map_or(T::zero(), |s| s.pdf)
+    }
+
+    /// Light that arrives if nothing is in between: a beam, or one draw from an area.
+    #[inline(always)]
+    pub fn sample(&self, from: Vec3<T>, u: [T; 2]) -> Option<Arrival<T>> {
+        if let Some(s) = self.sight(from, u) {
+            let value = self.radiance() * (T::one() / s.pdf);
+            return Some(Arrival { wi: s.wi, distance: s.distance, value, pdf: s.pdf });
+        }
+        let beam = self.beam(from)?;
+        Some(Arrival { wi: beam.wi, distance: beam.distance, value: beam.irradiance, pdf: T::INFINITY })
+    }
+}
+
+#[inline(always)]
+fn from_point<T: Real>(position: Vec3<T>, intensity: Vec3<T>, point: Vec3<T>) -> Option<Beam<T>> {
+    let to = position - point;
+    if to == Vec3::splat(T::zero()) {
+        return None;
+    }
+    let wi = to.normalize();
+    let distance = to.dot(wi);
+    // In two steps: the square of a large distance overflows before the quotient vanishes.
+    let irradiance = intensity.map(|i| i / distance / distance);
+    Some(Beam { wi, distance, irradiance })
+}
+
+/// Ambient light, from `wi`.
+#[inline(always)]
+fn everywhere<T: Real>(wi: Vec3<T>) -> Sighting<T> {
+    Sighting { wi, distance: T::INFINITY, pdf: T::one() / (T::of(4.0) * T::PI) }
 }

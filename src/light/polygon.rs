@@ -21,6 +21,7 @@ use crate::vec::Vec3;
 
 /// Orders 0 … 6.
 pub const ORDERS: usize = 7;
+pub type Moments = [f64; ORDERS];
 
 /// Sums over the edges of the clipped polygon, as they are walked.
 struct Walk {
@@ -72,7 +73,7 @@ impl Walk {
 
 /// Moments of orders 0 … 6 of a polygon whose corners are given from the point, the normal being z. Positive for a
 /// polygon that is counter-clockwise as seen from the point.
-pub fn moments(corners: &[Vec3<f64>]) -> [f64; ORDERS] {
+pub fn moments(corners: &[Vec3<f64>]) -> Moments {
     let mut walk = Walk { arcs: [0.0; ORDERS - 1], solid_angle: 0.0, ends: None };
     let mut before = corners[corners.len() - 1];
     for &corner in corners {
@@ -98,17 +99,6 @@ pub fn moments(corners: &[Vec3<f64>]) -> [f64; ORDERS] {
         moment[n] = (lower - walk.arcs[n - 1]) / (n + 1) as f64;
     }
     moment
-}
-
-/// The corners as seen from a point with a unit normal.
-#[inline(always)]
-pub fn seen_from<const N: usize>(
-    corners: [Vec3<f64>; N],
-    point: Vec3<f64>,
-    normal: Vec3<f64>,
-) -> [Vec3<f64>; N] {
-    let frame = Frame::about(normal);
-    corners.map(|c| frame.local(c - point))
 }
 
 /// Moments 0 … 6 of one polygon at many points; negative where its back is seen, zero in its plane.

@@ -1,15 +1,14 @@
 //! The radiance that surfaces reflect from lights with nothing in between: the first factor of real-time direct light.
 //!
-//! Punctual lights, and the diffuse part of rectangles with its Fresnel factor, are in closed form (the factor is a
-//! polynomial of the cosine: see [`super::polygon`]). The mirrors' part of a rectangle is an average of `samples` points
+//! Punctual lights, and the diffuse part of area lights with its Fresnel factor, are in closed form (the factor is a
+//! polynomial of the cosine: see [`super::polygon`]). The mirrors' part of an area light is an average of `samples` points
 //! of the light and, unless the lobe is dim beside it, as many directions of the lobe (balance heuristic); its error falls
 //! faster than 1/√samples, since both are scrambled Sobol' points, a scramble of its own for every receiver.
 //!
 //! E. Veach, L. Guibas, *Optimally combining sampling techniques for Monte Carlo rendering*, 1995.
 
 use super::Light;
-use super::irradiance::rect_moments;
-use super::rect::Rect;
+use super::irradiance::moments;
 use crate::brdf::ggx;
 use crate::brdf::metallic_roughness::{Lobes, Materials};
 use crate::dispatch;
@@ -79,9 +78,10 @@ impl<T: Real> Receiver<T> {
     /// Radiance towards the eye from one light.
     #[inline(always)]
     pub fn unshadowed(&self, light: &Light<T>, stream: u64, seed: u64, digits: &[[u32; 3]]) -> Vec3<T> {
-        match light {
-            Light::Rect(rect) => self.diffuse_of_rect(rect) + self.mirrored_rect(rect, stream, seed, digits),
-            _ => self.beam(light).map_or(Vec3::splat(T::zero()), |(radiance, ..)| radiance),
+        if light.has_area() {
+            self.diffuse(light) + self.mirrored(light, stream, seed, digits)
+        } else {
+            self.beam(light).map_or(Vec3::splat(T::zero()), |(radiance, ..)| radiance)
         }
     }
 
@@ -96,42 +96,42 @@ impl<T: Real> Receiver<T> {
 
     /// The diffuse part: base/π (1 − F(wo)) ∫ (1 − F(c)) c dω, with (1 − c)⁵ c written in powers of c.
     #[inline(always)]
-    fn diffuse_of_rect(&self, rect: &Rect<T>) -> Vec3<T> {
+    fn diffuse(&self, light: &Light<T>) -> Vec3<T> {
         if self.wo.z <= T::zero() {
             return Vec3::splat(T::zero());
         }
-        let m = rect_moments(rect, self.point, self.frame.z);
+        let m = moments(light, self.point, self.frame.z);
         let grazing = m[1] - 5.0 * m[2] + 10.0 * m[3] - 10.0 * m[4] + 5.0 * m[5] - m[6];
         let (f0, f90) = (self.lobes.base_f0.to_f64(), self.lobes.base_f90.to_f64());
         let through = (1.0 - f0) * m[1] - (f90 - f0) * grazing;
         let factor = T::of(through) * self.lobes.transmitted(self.wo.z) / T::PI;
-        self.lobes.diffuse.times(rect.radiance) * factor
+        self.lobes.diffuse.times(light.radiance()) * factor
     }
 
     /// Whether directions of the mirrors' lobe are worth drawing beside points of the light: unless the lobe is dim
     /// and wide beside it, so that the balance heuristic would hardly count them. Depends on no sample, hence no bias.
     #[inline(always)]
-    pub fn lobe_matters(&self, rect: &Rect<T>) -> bool {
+    pub fn lobe_matters(&self, light: &Light<T>) -> bool {
         if !self.lobes.is_specular() || self.wo.z <= T::zero() {
             return false;
         }
         let peak = ggx::ggx_pdf(Vec3::new(-self.wo.x, -self.wo.y, self.wo.z), self.wo, self.lobes.alpha);
         let half = T::of(0.5);
-        !rect.sample(self.point, [half, half]).is_some_and(|s| peak < T::of(0.25) * s.pdf)
+        !light.sight(self.point, [half, half]).is_some_and(|s| peak < T::of(0.25) * s.pdf)
     }
 
     /// The mirrors' part, by sampling the light and the lobe.
     #[inline(always)]
-    fn mirrored_rect(&self, rect: &Rect<T>, stream: u64, seed: u64, digits: &[[u32; 3]]) -> Vec3<T> {
+    fn mirrored(&self, light: &Light<T>, stream: u64, seed: u64, digits: &[[u32; 3]]) -> Vec3<T> {
         let none = Vec3::splat(T::zero());
         if !self.lobes.is_specular() || self.wo.z <= T::zero() || digits.is_empty() {
             return none;
         }
         let scramble: [Scramble; 4] = std::array::from_fn(|d| Scramble::new(seed, stream, d as u32));
-        let (mut sum, both) = (none, self.lobe_matters(rect));
+        let (mut sum, both) = (none, self.lobe_matters(light));
         let lobe = |wi| if both { ggx::ggx_pdf(wi, self.wo, self.lobes.alpha) } else { T::zero() };
         for x in digits {
-            let sighting = rect.sample(self.point, [scramble[0].fraction(x[0]), scramble[1].fraction(x[1])]);
+            let sighting = light.sight(self.point, [scramble[0].fraction(x[0]), scramble[1].fraction(x[1])]);
             if let Some(s) = sighting {
                 let wi = self.frame.local(s.wi);
                 if wi.z > T::zero() {
@@ -144,12 +144,12 @@ impl<T: Real> Receiver<T> {
             let u = [scramble[2].fraction(x[0]), scramble[3].fraction(x[1])];
             let wi = ggx::ggx_sample(self.wo, u, self.lobes.alpha);
             if wi.z > T::zero()
-                && let Some(s) = rect.meet(self.point, self.frame.world(wi))
+                && let Some(s) = light.meet(self.point, self.frame.world(wi))
             {
                 sum = sum + self.lobes.specular(wi, self.wo) * (wi.z / (s.pdf + lobe(wi)));
             }
         }
-        sum.times(rect.radiance) * (T::one() / T::of(digits.len() as f64))
+        sum.times(light.radiance()) * (T::one() / T::of(digits.len() as f64))
     }
 }
 

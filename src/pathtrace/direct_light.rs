@@ -1,6 +1,6 @@
 //! Light from the lights, reflected once, with shadows: the reference of every shadow technique, at given points.
 //!
-//! A punctual light takes one shadow ray. A rectangle takes `samples` points of its area and, where the material has
+//! A punctual light takes one shadow ray. An area light takes `samples` points of its area and, where the material has
 //! mirrors whose lobe is bright beside it, as many directions of that, weighed by the balance heuristic. Both are Owen-scrambled Sobol' points
 //! with a scramble of its own for every receiver, so the error at an edge of shadow falls faster than 1/√samples. A
 //! run of samples that goes on where another ended (`start`) extends the same sequence; different seeds are independent.
@@ -15,9 +15,8 @@ use super::{Tally, leave};
 use crate::accel::{Bvh, Ray};
 use crate::brdf::ggx;
 use crate::dispatch;
-use crate::light::Light;
-use crate::light::rect::{Rect, Sighting};
 use crate::light::unshadowed::{Receiver, Receivers, digits};
+use crate::light::{Light, Sighting};
 use crate::parallel::{self, Interrupted, Watch};
 use crate::real::Real;
 use crate::sampling::sobol::Scramble;
@@ -57,7 +56,7 @@ impl<T: Real> Site<T> {
     fn aim(
         &self,
         bench: &mut Bench<T>,
-        rect: &Rect<T>,
+        light: &Light<T>,
         s: &Sighting<T>,
         wi: Vec3<T>,
         sample: usize,
@@ -68,37 +67,37 @@ impl<T: Real> Site<T> {
             return;
         }
         let lobe = if both { ggx::ggx_pdf(wi, r.wo, r.lobes.alpha) } else { T::zero() };
-        let value = r.lobes.eval(wi, r.wo).times(rect.radiance) * (wi.z / (s.pdf + lobe));
+        let value = r.lobes.eval(wi, r.wo).times(light.radiance()) * (wi.z / (s.pdf + lobe));
         bench.rays.push(leave(r.point, self.normal, s.wi, self.offset, s.distance));
         bench.carried.push((value, sample));
     }
 
-    /// Samples one rectangle.
+    /// Samples one area light.
     #[inline(always)]
-    fn rect<S: Simd>(
+    fn area<S: Simd>(
         &self,
         s: S,
         bvh: &Bvh<T>,
-        rect: &Rect<T>,
+        light: &Light<T>,
         scramble: &[Scramble; 4],
         digits: &[[u32; 3]],
         bench: &mut Bench<T>,
     ) -> Tally {
         let (r, mut tally) = (&self.receiver, Tally::default());
-        let both = r.lobe_matters(rect);
+        let both = r.lobe_matters(light);
         for batch in digits.chunks(BATCH) {
             bench.rays.clear();
             bench.carried.clear();
             for (k, x) in batch.iter().enumerate() {
                 let u = [scramble[0].fraction(x[0]), scramble[1].fraction(x[1])];
-                if let Some(sighting) = rect.sample(r.point, u) {
-                    self.aim(bench, rect, &sighting, r.frame.local(sighting.wi), k, both);
+                if let Some(sighting) = light.sight(r.point, u) {
+                    self.aim(bench, light, &sighting, r.frame.local(sighting.wi), k, both);
                 }
                 if both {
                     let u = [scramble[2].fraction(x[0]), scramble[3].fraction(x[1])];
                     let wi = ggx::ggx_sample(r.wo, u, r.lobes.alpha);
-                    if let Some(sighting) = rect.meet(r.point, r.frame.world(wi)) {
-                        self.aim(bench, rect, &sighting, wi, k, both);
+                    if let Some(sighting) = light.meet(r.point, r.frame.world(wi)) {
+                        self.aim(bench, light, &sighting, wi, k, both);
                     }
                 }
             }
@@ -180,10 +179,10 @@ fn body<T: Real, S: Simd>(
             let normal = footing.normals.map_or(receiver.frame.z, |n| n[i].into());
             let site = Site { receiver, normal, offset: footing.offset };
             for (l, light) in lights.iter().enumerate() {
-                if let Light::Rect(rect) = light {
+                if light.has_area() {
                     let stream = (l as u64) << 40 | i as u64;
                     let scramble = std::array::from_fn(|d| Scramble::new(seed, stream, d as u32));
-                    let tally = site.rect(s, bvh, rect, &scramble, digits, &mut bench);
+                    let tally = site.area(s, bvh, light, &scramble, digits, &mut bench);
                     let of_mean = tally.variance();
                     (0..3)
                         .for_each(|c| (sum[c], spread[c]) = (sum[c] + tally.mean[c], spread[c] + of_mean[c]));

@@ -5,6 +5,7 @@ pub mod array;
 mod accel;
 mod brdf;
 mod color;
+mod environment;
 mod geometry;
 mod image;
 mod light;
@@ -23,8 +24,8 @@ use pyo3::prelude::*;
 mod _kernels {
     #[pymodule_export]
     use super::{
-        accel::accel, brdf::brdf, color::color, geometry::geometry, image::image, light::light, math::math,
-        mesh::mesh, pathtrace::pathtrace, raster::raster, runtime::runtime, sampling::sampling,
-        shadow::shadow, transform::transform,
+        accel::accel, brdf::brdf, color::color, environment::environment, geometry::geometry, image::image,
+        light::light, math::math, mesh::mesh, pathtrace::pathtrace, raster::raster, runtime::runtime,
+        sampling::sampling, shadow::shadow, transform::transform,
     };
 }

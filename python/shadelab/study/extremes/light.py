@@ -102,7 +102,7 @@ def _close(dtype: np.dtype) -> Measurement:
 
 
 @extreme(
-    "light.rect_sample",
+    "light.light_sample",
     "seen edge-on, from its plane, from behind, from itself",
     domain="heights 0, ±1e-7, ±1 about the light's plane; u at the ends of the square; wrong signs and NaN are counted",
     unit="count",
@@ -114,7 +114,7 @@ def _edge_on(dtype: np.dtype) -> Measurement:
     u = np.stack(np.meshgrid(ends, ends), -1).reshape(-1, 2)
     heights = np.array([0, 1e-7, -1e-7, 1, -1], dtype)
     points = np.stack([0 * heights + dtype.type(3), heights, 0 * heights], -1)[:, None]
-    sample = light.rect_sample(rect, points, u)
+    sample = light.light_sample(rect, points, u)
     front = np.broadcast_to(heights[:, None] > 0, sample.pdf.shape)
     wrong = int(((sample.pdf > 0) != front).sum())
     return Measurement(wrong, sample.pdf.size, int((~np.isfinite(sample.pdf)).sum()))

@@ -2,42 +2,75 @@
 
 use crate::brdf::metallic_roughness::Materials;
 use crate::light::Light;
+use crate::light::disk::Disk;
+use crate::light::polygon_light::PolygonLight;
 use crate::light::rect::Rect;
+use crate::light::sphere::Sphere;
+use crate::light::spot::Spot;
 use crate::light::unshadowed::{Receivers, Viewer};
-use crate::python::array::In;
+use crate::python::array::{In, unknown};
 use crate::real::Real;
+use crate::transform::orthonormal_basis::Frame;
 use crate::vec::Vec3;
 use numpy::Element;
 use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
 
-/// Lights from the rows that `shadelab.light` packs: kind, three vectors, colour, two_sided.
+/// Lights from the numbers that `shadelab.light` packs: kind, how many numbers follow, and these.
 pub fn lights<T: Real>(table: &Bound<'_, PyAny>) -> PyResult<Vec<Light<T>>> {
     let table = In::<f64>::of("lights", table)?;
-    table.items::<14>()?.iter().map(light).collect()
+    let mut rest = table.slice()?;
+    let mut lights = Vec::new();
+    while let [kind, count, values @ ..] = rest {
+        let (own, others) =
+            values.split_at_checked(*count as usize).ok_or_else(|| unknown("lights", "length"))?;
+        lights.push(light(*kind as i32, own)?);
+        rest = others;
+    }
+    Ok(lights)
 }
 
-fn light<T: Real>(row: &[f64; 14]) -> PyResult<Light<T>> {
-    let vector = |at: usize| Vec3::new(row[at], row[at + 1], row[at + 2]);
-    let rounded = |v: Vec3<f64>| v.map(T::of);
-    let color = rounded(vector(10));
-    match row[0] as i32 {
-        0 => Ok(Light::Point { position: rounded(vector(1)), intensity: color }),
-        1 => Ok(Light::Directional { direction: rounded(vector(1).normalize()), irradiance: color }),
-        2 => {
-            let [center, u, v] = [1, 4, 7].map(|at| rounded(vector(at)));
-            Ok(Light::Rect(Rect::new(center, u, v, color, row[13] != 0.0)))
+/// The one light of a table.
+pub fn one_light<T: Real>(table: &Bound<'_, PyAny>) -> PyResult<Light<T>> {
+    lights(table)?.pop().ok_or_else(|| unknown("light", "nothing"))
+}
+
+fn light<T: Real>(kind: i32, numbers: &[f64]) -> PyResult<Light<T>> {
+    let (vectors, rest) = numbers.as_chunks();
+    let double = |i: usize| vectors.get(i).map_or(Vec3::splat(f64::NAN), |&v| Vec3::from(v));
+    let vector = |i: usize| double(i).map(T::of);
+    let unit = |i: usize| double(i).normalize().map(T::of);
+    // What is left of thirds: radii, angles, whether both sides shine.
+    let last = |i: usize| rest.get(i).copied().unwrap_or(0.0);
+    Ok(match kind {
+        0 => Light::Point { position: vector(1), intensity: vector(0) },
+        1 => Light::Directional { direction: unit(1), irradiance: vector(0) },
+        2 => Light::Rect(Rect::new(vector(1), vector(2), vector(3), vector(0), last(0) != 0.0)),
+        3 => Light::Spot(Spot {
+            position: vector(1),
+            direction: unit(2),
+            intensity: vector(0),
+            inner: T::of(last(0)),
+            outer: T::of(last(1)),
+        }),
+        4 => Light::Disk(Disk {
+            center: vector(1),
+            frame: Frame::about(unit(2)),
+            radius: T::of(last(0)),
+            radiance: vector(0),
+            two_sided: last(1) != 0.0,
+        }),
+        5 => Light::Sphere(Sphere { center: vector(1), radius: T::of(last(0)), radiance: vector(0) }),
+        6 => {
+            let corners: Vec<_> = (1..vectors.len()).map(double).collect();
+            let polygon = PolygonLight::new(&corners, vector(0), last(0) != 0.0);
+            Light::Polygon(polygon.ok_or_else(|| {
+                PyValueError::new_err("corners: expected a polygon that does not cross itself")
+            })?)
         }
-        kind => Err(PyValueError::new_err(format!("lights: unknown kind {kind}"))),
-    }
-}
-
-/// The one rectangle of a table.
-fn rectangle<T: Real>(table: &Bound<'_, PyAny>) -> PyResult<Rect<T>> {
-    match lights(table)?.first() {
-        Some(Light::Rect(rect)) => Ok(*rect),
-        _ => Err(PyValueError::new_err("light: expected a RectLight")),
-    }
+        7 => Light::Ambient { radiance: vector(0) },
+        kind => return Err(unknown("lights", &format!("kind {kind}"))),
+    })
 }
 
 /// The arrays of receivers, held while a kernel reads them.
@@ -94,8 +127,8 @@ impl<'py, T: Real + Element> ReceiverArrays<'py, T> {
 
 #[pymodule]
 pub mod light {
-    use super::{ReceiverArrays, ReceiverTuple, double_corners, lights, rectangle};
-    use crate::light::{irradiance as received, polygon, rect, unshadowed as direct};
+    use super::{ReceiverArrays, ReceiverTuple, double_corners, lights, one_light};
+    use crate::light::{irradiance as received, polygon, sample, unshadowed as direct};
     use crate::python::array::{In, Out, run};
     use crate::real;
     use pyo3::prelude::*;
@@ -127,7 +160,7 @@ pub mod light {
         out: &Bound<'_, PyAny>,
     ) -> PyResult<()> {
         real!(out, T => {
-            let light = lights::<T>(light)?[0];
+            let light = one_light::<T>(light)?;
             let (p, n) = (In::<T>::of("points", points)?, In::<T>::of("normals", normals)?);
             let mut out = Out::<T>::of("out", out)?;
             let (p, n, out) = (p.items()?, n.items()?, out.items()?);
@@ -136,7 +169,7 @@ pub mod light {
     }
 
     #[pyfunction]
-    fn rect_sample(
+    fn light_sample(
         py: Python<'_>,
         light: &Bound<'_, PyAny>,
         points: &Bound<'_, PyAny>,
@@ -144,30 +177,30 @@ pub mod light {
         out: [Bound<'_, PyAny>; 3],
     ) -> PyResult<()> {
         real!(points, T => {
-            let light = rectangle::<T>(light)?;
+            let light = one_light::<T>(light)?;
             let (p, u) = (In::<T>::of("points", points)?, In::<T>::of("u", u)?);
             let [wi, distance, pdf] = &out;
             let (mut wi, mut distance) = (Out::<T>::of("wi", wi)?, Out::<T>::of("distance", distance)?);
             let mut pdf = Out::<T>::of("pdf", pdf)?;
             let (p, u, wi, distance, pdf) = (p.items()?, u.items()?, wi.items()?, distance.slice()?, pdf.slice()?);
-            run(py, None, |watch| rect::rect_sample_many(watch, light, p, u, wi, distance, pdf))
+            run(py, None, |watch| sample::light_sample_many(watch, &light, p, u, wi, distance, pdf))
         })
     }
 
     #[pyfunction]
-    fn rect_pdf(
+    fn light_pdf(
         py: Python<'_>,
         light: &Bound<'_, PyAny>,
         points: &Bound<'_, PyAny>,
         wi: &Bound<'_, PyAny>,
         out: &Bound<'_, PyAny>,
     ) -> PyResult<()> {
-        real!(out, T => {
-            let light = rectangle::<T>(light)?;
+        real!(points, T => {
+            let light = one_light::<T>(light)?;
             let (p, wi) = (In::<T>::of("points", points)?, In::<T>::of("wi", wi)?);
             let mut out = Out::<T>::of("out", out)?;
             let (p, wi, out) = (p.items()?, wi.items()?, out.slice()?);
-            run(py, None, |watch| rect::rect_pdf_many(watch, light, p, wi, out))
+            run(py, None, |watch| sample::light_pdf_many(watch, &light, p, wi, out))
         })
     }
 

@@ -1,0 +1,5 @@
+//! Light from all around.
+//!
+//! - [`panorama`]: equirectangular pictures of radiance: looked up, drawn from by importance
+
+pub mod panorama;
