@@ -126,7 +126,7 @@ class Environment:
 
     @property
     def power(self) -> float:
-        """The luminance of radiance, integrated over all directions: what draws are weighed by."""
+        """The luminance of radiance, integrated over all directions with the sines of the pixels' centres."""
         return float(_kernels.power(self._panorama(self.dtype)))
 
     def _panorama(self, dtype: DTypeLike) -> Any:

@@ -8,7 +8,7 @@ from __future__ import annotations
 import math
 from collections.abc import Sequence
 from dataclasses import dataclass, field
-from typing import Any, NamedTuple, TypeAlias
+from typing import TYPE_CHECKING, Any, NamedTuple, TypeAlias
 
 import numpy as np
 from numpy.typing import ArrayLike, DTypeLike, NDArray
@@ -18,8 +18,10 @@ from . import mesh as _mesh
 from ._arrays import Floats
 from ._models import load, load_mesh
 from ._pictures import load_image, save_image
-from .environment import Environment
 from .mesh import Mesh
+
+if TYPE_CHECKING:
+    from .environment import Environment
 
 __all__ = [
     "Camera",
@@ -373,6 +375,8 @@ class Scene:
         set_(self, "lights", lights)
         set_(self, "background", _triple("background", self.background, 0))
         if self.environment is not None:
+            from .environment import Environment
+
             if not isinstance(self.environment, Environment):
                 raise TypeError(f"environment: expected an Environment, got {type(self.environment).__name__}")
             if any(self.background):

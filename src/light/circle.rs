@@ -41,11 +41,11 @@ impl Circle {
     pub fn new(center: Vec3<f64>, normal: Vec3<f64>, radius: f64) -> Self {
         let along = center.dot(normal);
         let normal = if along > 0.0 { -normal } else { normal };
-        let across = center - normal * center.dot(normal);
-        let offset = across.normalize().dot(across);
-        // Under the centre any direction serves.
-        let p = if offset > 0.0 { across.normalize() } else { Frame::about(normal).x };
-        let offset = if offset > 0.0 { offset } else { 0.0 };
+        // In the plane to the last bit, even where the centre is all but above the foot.
+        let frame = Frame::about(normal);
+        let (x, y) = (frame.x.dot(center), frame.y.dot(center));
+        let offset = (x * x + y * y).sqrt();
+        let p = if offset > 0.0 { frame.x * (x / offset) + frame.y * (y / offset) } else { frame.x };
         Circle { height: along.abs(), offset, radius, p, q: normal.cross(p), normal }
     }
 

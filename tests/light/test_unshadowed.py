@@ -27,7 +27,7 @@ def frame(normal):
 
 def dense(light, points, normals, material, n=1 << 12):
     """The average over many points of the light, in NumPy over the public functions."""
-    wi, _, pdf = sl.light.rect_sample(light, points[:, None], sl.sampling.sobol(n, 2))
+    wi, _, pdf = sl.light.light_sample(light, points[:, None], sl.sampling.sobol(n, 2))
     local = frame(normals)
     wo = EYE - points
     wo = np.einsum("nij,nj->ni", local, wo / np.linalg.norm(wo, axis=-1, keepdims=True))
@@ -112,7 +112,7 @@ def test_wrong_calls_name_the_argument():
         sl.light.unshadowed(LIGHTS, points, normals, [0.5] * 3)
     with pytest.raises(ValueError, match=r"material_ids: index 3 is out of range \[-1, 2\)"):
         sl.light.unshadowed(LIGHTS, points, normals, [[0.5] * 3] * 2, eye=EYE, material_ids=[0, 1, 3, 0])
-    with pytest.raises(TypeError, match="lights: expected PointLight"):
+    with pytest.raises(TypeError, match="lights: expected a light or lights"):
         sl.light.unshadowed(["sun"], points, normals, [0.5] * 3, eye=EYE)
     nan = points.copy()
     nan[1] = np.nan
