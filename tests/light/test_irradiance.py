@@ -64,8 +64,8 @@ def test_spots_fall_off_smoothly_between_their_angles(dtype):
 
 
 def _quadrature(light, point, normal):
-    """By an adaptive rule in double: over the disk, or over the cone of a sphere; the horizon is met by bisection of the
-    inner interval, so that every piece is smooth."""
+    """By an adaptive rule over rings of the disk, or of the cone of a sphere, cut at the horizon so that every piece is
+    smooth."""
     if isinstance(light, sl.light.SphereLight):
         to = np.subtract(light.center, point)
         distance = np.linalg.norm(to)

@@ -36,7 +36,7 @@ def test_samples_lie_on_the_rectangle_and_have_their_density(dtype):
 def test_draws_have_the_density_that_is_asked_for(light, dtype):
     points = np.random.default_rng(1).uniform(-1, 1, (2000, 3)).astype(dtype)
     u = (0.001 + 0.998 * sl.sampling.sobol(2000, 2)).astype(dtype)
-    wi, distance, pdf = sl.light.light_sample(light, points, u)
+    wi, _, pdf = sl.light.light_sample(light, points, u)
     seen = pdf > 0
     assert seen.any() and np.array_equal(seen, np.linalg.norm(wi, axis=-1) > 0.5)
     again = sl.light.light_pdf(light, points, wi)[seen]
