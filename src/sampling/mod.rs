@@ -4,11 +4,19 @@
 //! - [`sobol`]: Sobol' sequences and Owen's scrambling (`joe_kuo` holds their direction numbers)
 //! - [`disk`], [`triangle`], [`cosine_hemisphere`]: the unit square warped onto each, with inverses and densities
 
+pub mod alias_table;
+pub mod area_to_solid_angle;
+pub mod cone;
 pub mod cosine_hemisphere;
 pub mod disk;
 pub mod generator;
+pub mod hemisphere;
 mod joe_kuo;
 pub mod sobol;
+pub mod sphere;
+pub mod spherical_rectangle;
+pub mod spherical_triangle;
+pub mod tabulated;
 pub mod triangle;
 
 use crate::dispatch;
