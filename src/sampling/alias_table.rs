@@ -4,7 +4,7 @@
 //! A. J. Walker, *An efficient method for generating discrete random variables with general distributions*, 1977;
 //! M. D. Vose, *A linear algorithm for generating random numbers with a given distribution*, 1991.
 
-use super::tabulated::Invalid;
+use super::tabulated::{Invalid, total};
 use crate::real::Real;
 
 /// Fills, for each column, the share that keeps its own index, and the index that the rest goes to. Shares are summed in
@@ -21,8 +21,9 @@ pub fn alias_table<T: Real>(weights: &[T], share: &mut [T], alias: &mut [u32]) -
     if largest == 0.0 {
         return Err(Invalid::Empty);
     }
-    let total: f64 = weights.iter().map(|w| w.to_f64() / largest).sum();
-    let mut left: Vec<f64> = weights.iter().map(|w| w.to_f64() / largest / total * n as f64).collect();
+    let total = total(weights, 1.0 / largest.max(1e-300));
+    let mut left: Vec<f64> =
+        weights.iter().map(|w| w.to_f64() / largest.max(1e-300) / total * n as f64).collect();
     // Columns not full, and those that overflow; the last to overflow fills what rounding leaves.
     let (mut small, mut large): (Vec<u32>, Vec<u32>) = (0..n as u32).partition(|&i| left[i as usize] < 1.0);
     while let (Some(&s), Some(&l)) = (small.last(), large.last()) {

@@ -6,8 +6,6 @@
 //! Malley's method, in P. Shirley, R. L. Morley, *Realistic Ray Tracing*, 2003.
 
 use super::disk::{self, Method};
-use super::map;
-use crate::parallel::{Interrupted, Watch};
 use crate::real::Real;
 use crate::vec::Vec3;
 
@@ -27,33 +25,4 @@ pub fn cosine_hemisphere_to_square<T: Real>(direction: Vec3<T>, method: Method) 
 #[inline(always)]
 pub fn square_to_cosine_hemisphere_pdf<T: Real>(direction: Vec3<T>) -> T {
     if direction.z < T::zero() { T::zero() } else { direction.z / T::PI }
-}
-
-/// [`square_to_cosine_hemisphere`] over an array.
-pub fn square_to_cosine_hemisphere_many<T: Real>(
-    watch: &mut dyn Watch,
-    u: &[[T; 2]],
-    method: Method,
-    out: &mut [[T; 3]],
-) -> Result<(), Interrupted> {
-    map(watch, u, out, |u| square_to_cosine_hemisphere(u, method).to_array())
-}
-
-/// [`cosine_hemisphere_to_square`] over an array.
-pub fn cosine_hemisphere_to_square_many<T: Real>(
-    watch: &mut dyn Watch,
-    directions: &[[T; 3]],
-    method: Method,
-    out: &mut [[T; 2]],
-) -> Result<(), Interrupted> {
-    map(watch, directions, out, |d| cosine_hemisphere_to_square(d.into(), method))
-}
-
-/// [`square_to_cosine_hemisphere_pdf`] over an array.
-pub fn square_to_cosine_hemisphere_pdf_many<T: Real>(
-    watch: &mut dyn Watch,
-    directions: &[[T; 3]],
-    out: &mut [[T; 1]],
-) -> Result<(), Interrupted> {
-    map(watch, directions, out, |d| [square_to_cosine_hemisphere_pdf(d.into())])
 }

@@ -6,9 +6,8 @@
 //!
 //! P. Shirley, K. Chiu, *A low distortion map between disk and square*, 1997.
 
-use super::{in_square, map};
+use super::in_square;
 use crate::math;
-use crate::parallel::{Interrupted, Watch};
 use crate::real::Real;
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -79,33 +78,4 @@ pub fn square_to_disk_pdf<T: Real>(p: [T; 2]) -> T {
     let squared = p[0] * p[0] + p[1] * p[1];
     let rim = T::one() + T::of(4.0) * T::EPSILON;
     if squared > rim { T::zero() } else { T::one() / T::PI + squared * T::zero() }
-}
-
-/// [`square_to_disk`] over an array.
-pub fn square_to_disk_many<T: Real>(
-    watch: &mut dyn Watch,
-    u: &[[T; 2]],
-    method: Method,
-    out: &mut [[T; 2]],
-) -> Result<(), Interrupted> {
-    map(watch, u, out, |u| square_to_disk(u, method))
-}
-
-/// [`disk_to_square`] over an array.
-pub fn disk_to_square_many<T: Real>(
-    watch: &mut dyn Watch,
-    p: &[[T; 2]],
-    method: Method,
-    out: &mut [[T; 2]],
-) -> Result<(), Interrupted> {
-    map(watch, p, out, |p| disk_to_square(p, method))
-}
-
-/// [`square_to_disk_pdf`] over an array.
-pub fn square_to_disk_pdf_many<T: Real>(
-    watch: &mut dyn Watch,
-    p: &[[T; 2]],
-    out: &mut [[T; 1]],
-) -> Result<(), Interrupted> {
-    map(watch, p, out, |p| [square_to_disk_pdf(p)])
 }

@@ -15,6 +15,7 @@
 //! J. Strackee, *The solid angle of a plane triangle*, 1983.
 
 use crate::math;
+use crate::math::exact::{exponent, largest, scaled};
 use crate::real::{Lanes, Real};
 use crate::vec::Vec3;
 
@@ -40,9 +41,9 @@ impl<T: Real> SphericalRectangle<T> {
     #[inline(always)]
     pub fn new(center: Vec3<T>, edge_u: Vec3<T>, edge_v: Vec3<T>) -> Self {
         let (half, zero) = (T::of(0.5), T::zero());
-        let size = |v: Vec3<T>| Lanes::max(Lanes::max(v.x.abs(), v.y.abs()), v.z.abs());
-        let largest = Lanes::max(size(center), Lanes::max(size(edge_u), size(edge_v)));
-        let [c, eu, ev] = [center, edge_u, edge_v].map(|v| v.map(|x| x / largest));
+        // In units of a power of two near the longest component: squares stay in range, and nothing is rounded.
+        let size = Lanes::max(largest(center), Lanes::max(largest(edge_u), largest(edge_v)));
+        let [c, eu, ev] = [center, edge_u, edge_v].map(|v| v.map(|x| scaled(x, -exponent(size))));
         let (ux, uy) = (eu.normalize(), ev.normalize());
         let normal = ux.cross(uy).normalize();
         let (width, height) = (eu.dot(ux), ev.dot(uy));
@@ -103,7 +104,8 @@ impl<T: Real> SphericalRectangle<T> {
         let (l, r) = (self.beyond[0] + u * share, self.beyond[1] + (one - u) * share);
         let x = clamp(self.column(l, r), self.x);
         let squared = x * x + self.d * self.d;
-        let ([a0, b0], [a1, b1]) = (Self::complements(self.y[0], squared), Self::complements(self.y[1], squared));
+        let ([a0, b0], [a1, b1]) =
+            (Self::complements(self.y[0], squared), Self::complements(self.y[1], squared));
         let (a, b) = (a0 * (one - v) + a1 * v, b0 * (one - v) + b1 * v);
         let y = squared.sqrt() * (b - a) * half / (a * b).sqrt();
         self.towards(x, clamp(y, self.y))
@@ -179,15 +181,50 @@ fn clamp<T: Real>(x: T, [low, high]: [T; 2]) -> T {
     }
 }
 
-/// Of a rectangle between two ends along each axis, at distance `d`: two triangles, each by van Oosterom and Strackee.
+/// Of a rectangle between two ends along each axis, at distance `d`: cut where it passes the foot of the perpendicular,
+/// so that no angle between corners of a part is obtuse.
 #[inline(always)]
 fn solid_angle<T: Real>(x: [T; 2], width: T, y: [T; 2], height: T, d: T) -> T {
-    let r = |i: usize, j: usize| (x[i] * x[i] + y[j] * y[j] + d * d).sqrt();
-    let dot = |i: usize, j: usize, k: usize, l: usize| x[i] * x[k] + y[j] * y[l] + d * d;
+    let (columns, rows) = (parts(x, width), parts(y, height));
+    let mut sum = T::zero();
+    for (x, width) in columns {
+        for (y, height) in rows {
+            // Also where NaN makes it neither.
+            if !(width <= T::zero() || height <= T::zero()) {
+                sum += part(x, width, y, height, d);
+            }
+        }
+    }
+    sum
+}
+
+/// The parts of an interval on either side of zero, as distances from it, with their lengths.
+#[inline(always)]
+fn parts<T: Real>([low, high]: [T; 2], length: T) -> [([T; 2], T); 2] {
+    let zero = T::zero();
+    if low < zero && high > zero {
+        [([zero, high], high), ([zero, -low], -low)]
+    } else if high <= zero {
+        [([-high, -low], length), ([zero; 2], zero)]
+    } else {
+        [([low, high], length), ([zero; 2], zero)]
+    }
+}
+
+/// Of a rectangle in the first quadrant: two triangles, each by van Oosterom and Strackee; sums of positive terms.
+#[inline(always)]
+fn part<T: Real>(x: [T; 2], width: T, y: [T; 2], height: T, d: T) -> T {
+    let d2 = d * d;
+    let r = [[0, 0], [0, 1], [1, 0], [1, 1]].map(|[i, j]| (x[i] * x[i] + y[j] * y[j] + d2).sqrt());
+    let [r00, r01, r10, r11] = r;
+    let (xx, yy) = (x[0] * x[1], y[0] * y[1]);
+    let across = xx + yy + d2;
+    let bottom = xx + y[0] * y[0] + d2;
+    let top = xx + y[1] * y[1] + d2;
+    let left = x[0] * x[0] + yy + d2;
+    let right = x[1] * x[1] + yy + d2;
     let volume = d * width * height;
-    let (r00, r01, r10, r11) = (r(0, 0), r(0, 1), r(1, 0), r(1, 1));
-    let across = dot(0, 0, 1, 1);
-    let first = r00 * r10 * r11 + dot(0, 0, 1, 0) * r11 + dot(1, 0, 1, 1) * r00 + across * r10;
-    let second = r00 * r01 * r11 + dot(0, 0, 0, 1) * r11 + dot(0, 1, 1, 1) * r00 + across * r01;
+    let first = r00 * r10 * r11 + bottom * r11 + right * r00 + across * r10;
+    let second = r00 * r01 * r11 + left * r11 + top * r00 + across * r01;
     T::of(2.0) * (math::atan2(volume, first) + math::atan2(volume, second))
 }

@@ -11,6 +11,7 @@
 //! triangle*, 1983.
 
 use crate::math;
+use crate::math::exact::{exponent, largest, scaled};
 use crate::real::{Lanes, Real};
 use crate::vec::Vec3;
 
@@ -58,10 +59,9 @@ impl<T: Real> SphericalTriangle<T> {
     /// Of three directions of any length; either way round. NaN where two coincide or are opposite.
     #[inline(always)]
     pub fn new(a: Vec3<T>, b: Vec3<T>, c: Vec3<T>) -> Self {
-        // In units of the longest component, squares of lengths stay in range.
-        let size = |v: Vec3<T>| Lanes::max(Lanes::max(v.x.abs(), v.y.abs()), v.z.abs());
-        let largest = Lanes::max(Lanes::max(size(a), size(b)), size(c));
-        let [a, b, c] = [a, b, c].map(|v| v.map(|x| x / largest));
+        // In units of a power of two near the longest component, so that squares stay in range and nothing is rounded.
+        let size = Lanes::max(Lanes::max(largest(a), largest(b)), largest(c));
+        let [a, b, c] = [a, b, c].map(|v| v.map(|x| scaled(x, -exponent(size))));
         let (ab, ac) = (unit_difference(a, b), unit_difference(a, c));
         let [a, b] = [a, b].map(|v| v.normalize());
         let half = T::of(0.5);

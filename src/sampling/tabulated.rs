@@ -4,11 +4,12 @@
 //! table tells where to begin, and the expected number of steps does not grow with n. The density is taken from the very
 //! sums that are inverted: what a cell says is how often it comes, to the bit, so estimates stay unbiased whatever the
 //! precision. A cell of less weight than the sums resolve (the rounding unit of the whole) may never come; its density
-//! is then zero. Sums are made in f64.
+//! is then zero. Sums are made in f64, compensated.
 //!
 //! L. Devroye, *Non-Uniform Random Variate Generation*, 1986, section III.2.4 (guide tables, after H.-C. Chen and
 //! Y. Asau 1974); M. Pharr, W. Jakob, G. Humphreys, *Physically Based Rendering*, 2023, appendix A.
 
+use crate::math::exact::two_sum;
 use crate::parallel::{self, Interrupted, Watch};
 use crate::real::{Lanes, Real};
 
@@ -116,16 +117,28 @@ impl<T: Real> Table<'_, T> {
     }
 }
 
+/// The sum of weights times `scale`, with the digits that single additions lose.
+pub(super) fn total<T: Real>(weights: &[T], scale: f64) -> f64 {
+    let (mut sum, mut lost) = (0.0, 0.0);
+    for w in weights {
+        let (s, low) = two_sum(sum, w.to_f64() * scale);
+        (sum, lost) = (s, lost + low);
+    }
+    sum + lost
+}
+
 /// Fills the sums and the guide of one row and gives its total over `scale`; an empty row is made even.
 fn fill<T: Real>(weights: &[T], scale: f64, sums: &mut [T], guide: &mut [u32]) -> f64 {
     let n = weights.len();
-    let total: f64 = weights.iter().map(|w| w.to_f64() * scale).sum();
-    let (mut sum, mut largest) = (0.0, T::zero());
+    let total = total(weights, scale);
+    let (mut sum, mut lost, mut largest) = (0.0, 0.0, T::zero());
     for i in 0..n {
         sums[i] = largest;
-        sum += if total > 0.0 { weights[i].to_f64() * scale / total } else { 1.0 / n as f64 };
-        // Sums of f64 may pass 1 by a rounding error; rounded to T they never fall.
-        largest = T::of(sum.min(1.0));
+        let share = if total > 0.0 { weights[i].to_f64() * scale / total } else { 1.0 / n as f64 };
+        let (s, low) = two_sum(sum, share);
+        (sum, lost) = (s, lost + low);
+        // Rounded, sums may pass 1, or fall.
+        largest = Lanes::max(largest, T::of((sum + lost).min(1.0)));
     }
     sums[n] = T::one();
     // Trailing cells without weight stay so: the last that has some takes what rounding left.
@@ -227,7 +240,11 @@ pub struct Drawn2<T> {
 
 impl<T: Real> Tabulated2D<T> {
     /// From weights row by row.
-    pub fn new(watch: &mut dyn Watch, weights: &[T], width: usize) -> Result<Result<Self, Invalid>, Interrupted> {
+    pub fn new(
+        watch: &mut dyn Watch,
+        weights: &[T],
+        width: usize,
+    ) -> Result<Result<Self, Invalid>, Interrupted> {
         let height = weights.len().checked_div(width).unwrap_or(0);
         let most = most_cells::<T>();
         if weights.is_empty() || height * width != weights.len() || width > most || height > most {
@@ -249,7 +266,7 @@ impl<T: Real> Tabulated2D<T> {
                 **total = fill(weights, scale, sums, guide);
             }
         })?;
-        let sum: f64 = totals.iter().sum();
+        let sum = total(&totals, 1.0);
         let mut marginal = (vec![T::zero(); height + 1], vec![0; height]);
         // Rows keep their own digits: totals go into the sums as f64.
         fill_totals(&totals, &mut marginal.0, &mut marginal.1);
@@ -260,7 +277,10 @@ impl<T: Real> Tabulated2D<T> {
     #[inline(always)]
     fn row(&self, row: usize) -> Table<'_, T> {
         let w = self.width;
-        Table { sums: &self.sums[row * (w + 1)..(row + 1) * (w + 1)], guide: &self.guide[row * w..(row + 1) * w] }
+        Table {
+            sums: &self.sums[row * (w + 1)..(row + 1) * (w + 1)],
+            guide: &self.guide[row * w..(row + 1) * w],
+        }
     }
     /// Width and height.
     pub fn size(&self) -> (usize, usize) {

@@ -5,8 +5,7 @@
 //! E. Heitz, *A low-distortion map between triangle and square*, 2019; P. Shirley, C. Wang, K. Zimmerman, *Monte Carlo
 //! techniques for direct lighting calculations*, 1996 (roots).
 
-use super::{in_square, map};
-use crate::parallel::{Interrupted, Watch};
+use super::in_square;
 use crate::real::Real;
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -50,33 +49,4 @@ pub fn square_to_triangle_pdf<T: Real>([u, v]: [T; 2]) -> T {
     let sum = u + v;
     let outside = u < T::zero() || v < T::zero() || sum > T::one();
     if outside { T::zero() } else { T::of(2.0) + sum * T::zero() }
-}
-
-/// [`square_to_triangle`] over an array.
-pub fn square_to_triangle_many<T: Real>(
-    watch: &mut dyn Watch,
-    u: &[[T; 2]],
-    method: Method,
-    out: &mut [[T; 2]],
-) -> Result<(), Interrupted> {
-    map(watch, u, out, |u| square_to_triangle(u, method))
-}
-
-/// [`triangle_to_square`] over an array.
-pub fn triangle_to_square_many<T: Real>(
-    watch: &mut dyn Watch,
-    p: &[[T; 2]],
-    method: Method,
-    out: &mut [[T; 2]],
-) -> Result<(), Interrupted> {
-    map(watch, p, out, |p| triangle_to_square(p, method))
-}
-
-/// [`square_to_triangle_pdf`] over an array.
-pub fn square_to_triangle_pdf_many<T: Real>(
-    watch: &mut dyn Watch,
-    p: &[[T; 2]],
-    out: &mut [[T; 1]],
-) -> Result<(), Interrupted> {
-    map(watch, p, out, |p| [square_to_triangle_pdf(p)])
 }

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
 from typing import Literal, TypeAlias
 
 from numpy.typing import ArrayLike
@@ -14,10 +13,13 @@ from .._kernels import sampling as _kernels
 __all__ = [
     "cosine_hemisphere_to_square",
     "disk_to_square",
+    "hemisphere_to_square",
     "square_to_cosine_hemisphere",
     "square_to_cosine_hemisphere_pdf",
     "square_to_disk",
     "square_to_disk_pdf",
+    "square_to_hemisphere",
+    "square_to_hemisphere_pdf",
     "square_to_triangle",
     "square_to_triangle_pdf",
     "triangle_to_square",
@@ -25,15 +27,6 @@ __all__ = [
 
 DiskMethod: TypeAlias = Literal["concentric", "polar"]
 TriangleMethod: TypeAlias = Literal["fold", "root"]
-
-
-def _warp(name: str, value: ArrayLike, into: int, kernel: Callable[..., None], size: int = 2, *method: str) -> Floats:
-    """Vectors of `size` components through a kernel, into vectors of `into` (0: into numbers)."""
-    array = _arrays.vectors(name, value, size)
-    flat = array.reshape(-1, size)
-    out = _arrays.output("out", None, (len(flat), max(into, 1)), array.dtype)
-    kernel(flat, *method, out)
-    return out.reshape(array.shape[:-1] + ((into,) if into else ()))
 
 
 def square_to_disk(u: ArrayLike, method: DiskMethod = "concentric") -> Floats:
@@ -71,7 +64,7 @@ def square_to_disk(u: ArrayLike, method: DiskMethod = "concentric") -> Floats:
            [1., 0.]])
     """
     _arrays.choice("method", method, ("concentric", "polar"))
-    return _warp("u", u, 2, _kernels.square_to_disk, 2, method)
+    return _arrays.elementwise(_kernels.square_to_disk, {"u": (u, 2)}, [2], method)[0]
 
 
 def disk_to_square(points: ArrayLike, method: DiskMethod = "concentric") -> Floats:
@@ -104,7 +97,7 @@ def disk_to_square(points: ArrayLike, method: DiskMethod = "concentric") -> Floa
     array([0.75, 0.5 ])
     """
     _arrays.choice("method", method, ("concentric", "polar"))
-    return _warp("points", points, 2, _kernels.disk_to_square, 2, method)
+    return _arrays.elementwise(_kernels.disk_to_square, {"points": (points, 2)}, [2], method)[0]
 
 
 def square_to_disk_pdf(points: ArrayLike) -> Floats:
@@ -132,7 +125,7 @@ def square_to_disk_pdf(points: ArrayLike) -> Floats:
     >>> square_to_disk_pdf([[0.5, 0.0], [1.5, 0.0]])
     array([0.31830989, 0.        ])
     """
-    return _warp("points", points, 0, _kernels.square_to_disk_pdf)
+    return _arrays.elementwise(_kernels.square_to_disk_pdf, {"points": (points, 2)}, [0])[0]
 
 
 def square_to_triangle(u: ArrayLike, method: TriangleMethod = "fold") -> Floats:
@@ -171,7 +164,7 @@ def square_to_triangle(u: ArrayLike, method: TriangleMethod = "fold") -> Floats:
            [0.  , 1.  ]])
     """
     _arrays.choice("method", method, ("fold", "root"))
-    return _warp("u", u, 2, _kernels.square_to_triangle, 2, method)
+    return _arrays.elementwise(_kernels.square_to_triangle, {"u": (u, 2)}, [2], method)[0]
 
 
 def triangle_to_square(barycentrics: ArrayLike, method: TriangleMethod = "fold") -> Floats:
@@ -205,7 +198,7 @@ def triangle_to_square(barycentrics: ArrayLike, method: TriangleMethod = "fold")
     array([0.5, 0.5])
     """
     _arrays.choice("method", method, ("fold", "root"))
-    return _warp("barycentrics", barycentrics, 2, _kernels.triangle_to_square, 2, method)
+    return _arrays.elementwise(_kernels.triangle_to_square, {"barycentrics": (barycentrics, 2)}, [2], method)[0]
 
 
 def square_to_triangle_pdf(barycentrics: ArrayLike) -> Floats:
@@ -230,7 +223,7 @@ def square_to_triangle_pdf(barycentrics: ArrayLike) -> Floats:
     >>> square_to_triangle_pdf([[0.25, 0.25], [0.75, 0.75]])
     array([2., 0.])
     """
-    return _warp("barycentrics", barycentrics, 0, _kernels.square_to_triangle_pdf)
+    return _arrays.elementwise(_kernels.square_to_triangle_pdf, {"barycentrics": (barycentrics, 2)}, [0])[0]
 
 
 def square_to_cosine_hemisphere(u: ArrayLike, method: DiskMethod = "concentric") -> Floats:
@@ -268,7 +261,7 @@ def square_to_cosine_hemisphere(u: ArrayLike, method: DiskMethod = "concentric")
     array([0., 0., 1.])
     """
     _arrays.choice("method", method, ("concentric", "polar"))
-    return _warp("u", u, 3, _kernels.square_to_cosine_hemisphere, 2, method)
+    return _arrays.elementwise(_kernels.square_to_cosine_hemisphere, {"u": (u, 2)}, [3], method)[0]
 
 
 def cosine_hemisphere_to_square(directions: ArrayLike, method: DiskMethod = "concentric") -> Floats:
@@ -301,7 +294,7 @@ def cosine_hemisphere_to_square(directions: ArrayLike, method: DiskMethod = "con
     array([0.5, 0.5])
     """
     _arrays.choice("method", method, ("concentric", "polar"))
-    return _warp("directions", directions, 2, _kernels.cosine_hemisphere_to_square, 3, method)
+    return _arrays.elementwise(_kernels.cosine_hemisphere_to_square, {"directions": (directions, 3)}, [2], method)[0]
 
 
 def square_to_cosine_hemisphere_pdf(directions: ArrayLike) -> Floats:
@@ -326,4 +319,100 @@ def square_to_cosine_hemisphere_pdf(directions: ArrayLike) -> Floats:
     >>> square_to_cosine_hemisphere_pdf([[0.0, 0.0, 1.0], [0.0, 0.0, -1.0]])
     array([0.31830989, 0.        ])
     """
-    return _warp("directions", directions, 0, _kernels.square_to_cosine_hemisphere_pdf, 3)
+    return _arrays.elementwise(_kernels.square_to_cosine_hemisphere_pdf, {"directions": (directions, 3)}, [0])[0]
+
+
+def square_to_hemisphere(u: ArrayLike, method: DiskMethod = "concentric") -> Floats:
+    """Points of the unit square onto the hemisphere about z, areas in constant proportion.
+
+    Parameters
+    ----------
+    u : array_like, shape (..., 2)
+        In [0, 1].
+    method : {"concentric", "polar"}
+        The disk map underneath, see `square_to_disk`.
+
+    Returns
+    -------
+    ndarray, shape (..., 3)
+        Unit directions with z ≥ 0; z = 0 only from the square's border ("polar": from u = 1).
+
+    Raises
+    ------
+    TypeError, ValueError
+        If `u` is not real or not of two components, or the method is unknown.
+
+    Notes
+    -----
+    Within 4 rounding units of 1 (5 for "polar"), and z to 2 rounding units of itself down to the horizon.
+
+    References
+    ----------
+    P. Shirley, K. Chiu, *A low distortion map between disk and square*, 1997.
+
+    Examples
+    --------
+    >>> square_to_hemisphere([[0.5, 0.5], [1.0, 0.5]])
+    array([[0., 0., 1.],
+           [1., 0., 0.]])
+    """
+    _arrays.choice("method", method, ("concentric", "polar"))
+    return _arrays.elementwise(_kernels.square_to_hemisphere, {"u": (u, 2)}, [3], method)[0]
+
+
+def hemisphere_to_square(directions: ArrayLike, method: DiskMethod = "concentric") -> Floats:
+    """The inverse of `square_to_hemisphere`.
+
+    Parameters
+    ----------
+    directions : array_like, shape (..., 3)
+        Unit, above the horizon.
+    method : {"concentric", "polar"}
+        That of the map which is inverted.
+
+    Returns
+    -------
+    ndarray, shape (..., 2)
+        In [0, 1).
+
+    Raises
+    ------
+    TypeError, ValueError
+        If `directions` is not real or not of three components, or the method is unknown.
+
+    Notes
+    -----
+    Back on the square within 6 rounding units of 1 (the angle of "polar": over the distance from the pole).
+
+    Examples
+    --------
+    >>> hemisphere_to_square([0.0, 0.0, 1.0])
+    array([0.5, 0.5])
+    """
+    _arrays.choice("method", method, ("concentric", "polar"))
+    return _arrays.elementwise(_kernels.hemisphere_to_square, {"directions": (directions, 3)}, [2], method)[0]
+
+
+def square_to_hemisphere_pdf(directions: ArrayLike) -> Floats:
+    """The density of `square_to_hemisphere`'s directions per solid angle: 1/2π above the horizon, 0 below.
+
+    Parameters
+    ----------
+    directions : array_like, shape (..., 3)
+        Unit directions.
+
+    Returns
+    -------
+    ndarray, shape (...)
+
+    Raises
+    ------
+    TypeError, ValueError
+        If `directions` is not real or not of three components.
+
+    Examples
+    --------
+    >>> square_to_hemisphere_pdf([[0.0, 0.0, 1.0], [0.0, 0.0, -1.0]])
+    array([0.15915494, 0.        ])
+    """
+    return _arrays.elementwise(_kernels.square_to_hemisphere_pdf, {"directions": (directions, 3)}, [0])[0]

@@ -1,7 +1,9 @@
 //! Bindings of `sampling`, a file for each of its faces.
 
+mod directions;
 mod generators;
 mod sequences;
+mod tabulated;
 mod warps;
 
 use pyo3::prelude::*;
@@ -15,23 +17,20 @@ pub mod sampling {
     #[pymodule_export]
     const SOBOL_DIMENSIONS: usize = super::sequences::SOBOL_DIMENSIONS;
     #[pymodule_export]
+    use super::directions::{
+        area_to_solid_angle, cone_to_square, sphere_to_square, spherical_rectangle_to_square,
+        spherical_triangle_to_square, square_to_cone, square_to_cone_pdf, square_to_sphere,
+        square_to_sphere_pdf, square_to_spherical_rectangle, square_to_spherical_rectangle_pdf,
+        square_to_spherical_triangle, square_to_spherical_triangle_pdf,
+    };
+    #[pymodule_export]
     use super::sequences::sobol;
     #[pymodule_export]
-    use super::warps::cosine_hemisphere_to_square;
+    use super::tabulated::{Table1D, Table2D, alias_table, sample_alias};
     #[pymodule_export]
-    use super::warps::disk_to_square;
-    #[pymodule_export]
-    use super::warps::square_to_cosine_hemisphere;
-    #[pymodule_export]
-    use super::warps::square_to_cosine_hemisphere_pdf;
-    #[pymodule_export]
-    use super::warps::square_to_disk;
-    #[pymodule_export]
-    use super::warps::square_to_disk_pdf;
-    #[pymodule_export]
-    use super::warps::square_to_triangle;
-    #[pymodule_export]
-    use super::warps::square_to_triangle_pdf;
-    #[pymodule_export]
-    use super::warps::triangle_to_square;
+    use super::warps::{
+        cosine_hemisphere_to_square, disk_to_square, hemisphere_to_square, square_to_cosine_hemisphere,
+        square_to_cosine_hemisphere_pdf, square_to_disk, square_to_disk_pdf, square_to_hemisphere,
+        square_to_hemisphere_pdf, square_to_triangle, square_to_triangle_pdf, triangle_to_square,
+    };
 }

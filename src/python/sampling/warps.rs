@@ -1,26 +1,11 @@
-//! Bindings of the warps.
+//! Bindings of the warps of disks, triangles and the hemisphere: disk, triangle, cosine_hemisphere, hemisphere.
 
-use crate::parallel::{Interrupted, Watch};
-use crate::python::array::{In, Out, run, unknown};
-use crate::real;
-use crate::real::Real;
-use crate::sampling::{cosine_hemisphere, disk, triangle};
-use numpy::Element;
+use crate::elementwise;
+use crate::python::array::{Arrays, unknown};
+use crate::sampling::{cosine_hemisphere as cosine, disk, hemisphere, triangle};
 use pyo3::prelude::*;
 
-/// One array in, one out, item by item.
-fn warp<T: Real + Element, const A: usize, const B: usize>(
-    py: Python<'_>,
-    input: &Bound<'_, PyAny>,
-    out: &Bound<'_, PyAny>,
-    kernel: impl FnOnce(&mut dyn Watch, &[[T; A]], &mut [[T; B]]) -> Result<(), Interrupted> + Send,
-) -> PyResult<()> {
-    let (input, mut out) = (In::<T>::of("input", input)?, Out::<T>::of("out", out)?);
-    let (input, out) = (input.items()?, out.items()?);
-    run(py, None, |watch| kernel(watch, input, out))
-}
-
-fn disk_method(method: &str) -> PyResult<disk::Method> {
+pub fn disk_method(method: &str) -> PyResult<disk::Method> {
     match method {
         "concentric" => Ok(disk::Method::Concentric),
         "polar" => Ok(disk::Method::Polar),
@@ -37,90 +22,101 @@ fn triangle_method(method: &str) -> PyResult<triangle::Method> {
 }
 
 #[pyfunction]
-pub fn square_to_disk(
-    py: Python<'_>,
-    input: &Bound<'_, PyAny>,
-    method: &str,
-    out: &Bound<'_, PyAny>,
-) -> PyResult<()> {
+pub fn square_to_disk(py: Python<'_>, method: &str, given: Arrays<'_>, out: Arrays<'_>) -> PyResult<()> {
     let method = disk_method(method)?;
-    real!(out, T => warp(py, input, out, |w, i, o| disk::square_to_disk_many::<T>(w, i, method, o)))
+    elementwise!(py, given, out, |u: [T; 2]| -> (p: [T; 2]) { disk::square_to_disk(u, method) })
 }
 
 #[pyfunction]
-pub fn disk_to_square(
-    py: Python<'_>,
-    input: &Bound<'_, PyAny>,
-    method: &str,
-    out: &Bound<'_, PyAny>,
-) -> PyResult<()> {
+pub fn disk_to_square(py: Python<'_>, method: &str, given: Arrays<'_>, out: Arrays<'_>) -> PyResult<()> {
     let method = disk_method(method)?;
-    real!(out, T => warp(py, input, out, |w, i, o| disk::disk_to_square_many::<T>(w, i, method, o)))
+    elementwise!(py, given, out, |p: [T; 2]| -> (u: [T; 2]) { disk::disk_to_square(p, method) })
 }
 
 #[pyfunction]
-pub fn square_to_disk_pdf(py: Python<'_>, input: &Bound<'_, PyAny>, out: &Bound<'_, PyAny>) -> PyResult<()> {
-    real!(out, T => warp(py, input, out, disk::square_to_disk_pdf_many::<T>))
+pub fn square_to_disk_pdf(py: Python<'_>, given: Arrays<'_>, out: Arrays<'_>) -> PyResult<()> {
+    elementwise!(py, given, out, |p: [T; 2]| -> (pdf: [T; 1]) { [disk::square_to_disk_pdf(p)] })
 }
 
 #[pyfunction]
-pub fn square_to_triangle(
-    py: Python<'_>,
-    input: &Bound<'_, PyAny>,
-    method: &str,
-    out: &Bound<'_, PyAny>,
-) -> PyResult<()> {
+pub fn square_to_triangle(py: Python<'_>, method: &str, given: Arrays<'_>, out: Arrays<'_>) -> PyResult<()> {
     let method = triangle_method(method)?;
-    real!(out, T => warp(py, input, out, |w, i, o| triangle::square_to_triangle_many::<T>(w, i, method, o)))
+    elementwise!(py, given, out, |u: [T; 2]| -> (p: [T; 2]) { triangle::square_to_triangle(u, method) })
 }
 
 #[pyfunction]
-pub fn triangle_to_square(
-    py: Python<'_>,
-    input: &Bound<'_, PyAny>,
-    method: &str,
-    out: &Bound<'_, PyAny>,
-) -> PyResult<()> {
+pub fn triangle_to_square(py: Python<'_>, method: &str, given: Arrays<'_>, out: Arrays<'_>) -> PyResult<()> {
     let method = triangle_method(method)?;
-    real!(out, T => warp(py, input, out, |w, i, o| triangle::triangle_to_square_many::<T>(w, i, method, o)))
+    elementwise!(py, given, out, |p: [T; 2]| -> (u: [T; 2]) { triangle::triangle_to_square(p, method) })
 }
 
 #[pyfunction]
-pub fn square_to_triangle_pdf(
-    py: Python<'_>,
-    input: &Bound<'_, PyAny>,
-    out: &Bound<'_, PyAny>,
-) -> PyResult<()> {
-    real!(out, T => warp(py, input, out, triangle::square_to_triangle_pdf_many::<T>))
+pub fn square_to_triangle_pdf(py: Python<'_>, given: Arrays<'_>, out: Arrays<'_>) -> PyResult<()> {
+    elementwise!(py, given, out, |p: [T; 2]| -> (pdf: [T; 1]) { [triangle::square_to_triangle_pdf(p)] })
 }
 
 #[pyfunction]
 pub fn square_to_cosine_hemisphere(
     py: Python<'_>,
-    input: &Bound<'_, PyAny>,
     method: &str,
-    out: &Bound<'_, PyAny>,
+    given: Arrays<'_>,
+    out: Arrays<'_>,
 ) -> PyResult<()> {
     let method = disk_method(method)?;
-    real!(out, T => warp(py, input, out, |w, i, o| cosine_hemisphere::square_to_cosine_hemisphere_many::<T>(w, i, method, o)))
+    elementwise!(py, given, out, |u: [T; 2]| -> (d: [T; 3]) {
+        cosine::square_to_cosine_hemisphere(u, method).to_array()
+    })
 }
 
 #[pyfunction]
 pub fn cosine_hemisphere_to_square(
     py: Python<'_>,
-    input: &Bound<'_, PyAny>,
     method: &str,
-    out: &Bound<'_, PyAny>,
+    given: Arrays<'_>,
+    out: Arrays<'_>,
 ) -> PyResult<()> {
     let method = disk_method(method)?;
-    real!(out, T => warp(py, input, out, |w, i, o| cosine_hemisphere::cosine_hemisphere_to_square_many::<T>(w, i, method, o)))
+    elementwise!(py, given, out, |d: [T; 3]| -> (u: [T; 2]) {
+        cosine::cosine_hemisphere_to_square(d.into(), method)
+    })
 }
 
 #[pyfunction]
-pub fn square_to_cosine_hemisphere_pdf(
+pub fn square_to_cosine_hemisphere_pdf(py: Python<'_>, given: Arrays<'_>, out: Arrays<'_>) -> PyResult<()> {
+    elementwise!(py, given, out, |d: [T; 3]| -> (pdf: [T; 1]) {
+        [cosine::square_to_cosine_hemisphere_pdf(d.into())]
+    })
+}
+
+#[pyfunction]
+pub fn square_to_hemisphere(
     py: Python<'_>,
-    input: &Bound<'_, PyAny>,
-    out: &Bound<'_, PyAny>,
+    method: &str,
+    given: Arrays<'_>,
+    out: Arrays<'_>,
 ) -> PyResult<()> {
-    real!(out, T => warp(py, input, out, cosine_hemisphere::square_to_cosine_hemisphere_pdf_many::<T>))
+    let method = disk_method(method)?;
+    elementwise!(py, given, out, |u: [T; 2]| -> (d: [T; 3]) {
+        hemisphere::square_to_hemisphere(u, method).to_array()
+    })
+}
+
+#[pyfunction]
+pub fn hemisphere_to_square(
+    py: Python<'_>,
+    method: &str,
+    given: Arrays<'_>,
+    out: Arrays<'_>,
+) -> PyResult<()> {
+    let method = disk_method(method)?;
+    elementwise!(py, given, out, |d: [T; 3]| -> (u: [T; 2]) {
+        hemisphere::hemisphere_to_square(d.into(), method)
+    })
+}
+
+#[pyfunction]
+pub fn square_to_hemisphere_pdf(py: Python<'_>, given: Arrays<'_>, out: Arrays<'_>) -> PyResult<()> {
+    elementwise!(py, given, out, |d: [T; 3]| -> (pdf: [T; 1]) {
+        [hemisphere::square_to_hemisphere_pdf(d.into())]
+    })
 }

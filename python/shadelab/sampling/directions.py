@@ -1,0 +1,538 @@
+"""The unit square warped onto sets of directions: spheres, cones, spherical triangles and rectangles."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from typing import Any, Literal, NamedTuple, overload
+
+from numpy.typing import ArrayLike
+
+from .. import _arrays
+from .._arrays import Floats
+from .._kernels import sampling as _kernels
+from .warps import DiskMethod
+
+__all__ = [
+    "DirectionSample",
+    "area_to_solid_angle",
+    "cone_to_square",
+    "sphere_to_square",
+    "spherical_rectangle_to_square",
+    "spherical_triangle_to_square",
+    "square_to_cone",
+    "square_to_cone_pdf",
+    "square_to_sphere",
+    "square_to_sphere_pdf",
+    "square_to_spherical_rectangle",
+    "square_to_spherical_rectangle_pdf",
+    "square_to_spherical_triangle",
+    "square_to_spherical_triangle_pdf",
+]
+
+
+class DirectionSample(NamedTuple):
+    """Directions towards a shape, and what it covers of the sphere."""
+
+    direction: Floats
+    """Unit, shape (..., 3)."""
+    solid_angle: Floats
+    """Of the shape; one over it is the density of the directions."""
+
+
+def square_to_sphere(u: ArrayLike) -> Floats:
+    """Points of the unit square onto the unit sphere, areas in constant proportion.
+
+    Parameters
+    ----------
+    u : array_like, shape (..., 2)
+        In [0, 1]: height 1 - 2u, azimuth 2πv.
+
+    Returns
+    -------
+    ndarray, shape (..., 3)
+        Unit vectors.
+
+    Raises
+    ------
+    TypeError, ValueError
+        If `u` is not real or not of two components.
+
+    Notes
+    -----
+    Within 3 rounding units of 1 of the exact point; near the poles x and y keep their digits.
+
+    References
+    ----------
+    P. Shirley, *Nonuniform random point sets via warping*, 1992.
+
+    Examples
+    --------
+    >>> square_to_sphere([[0.0, 0.0], [0.5, 0.25]])
+    array([[0., 0., 1.],
+           [0., 1., 0.]])
+    """
+    return _arrays.elementwise(_kernels.square_to_sphere, {"u": (u, 2)}, [3])[0]
+
+
+def sphere_to_square(directions: ArrayLike) -> Floats:
+    """The inverse of `square_to_sphere`.
+
+    Parameters
+    ----------
+    directions : array_like, shape (..., 3)
+        Unit vectors.
+
+    Returns
+    -------
+    ndarray, shape (..., 2)
+        In [0, 1).
+
+    Raises
+    ------
+    TypeError, ValueError
+        If `directions` is not real or not of three components.
+
+    Notes
+    -----
+    Back on the square within 4 rounding units of 1 (v: over the sine of the angle from the pole, where all v meet).
+
+    Examples
+    --------
+    >>> sphere_to_square([0.0, 1.0, 0.0])
+    array([0.5 , 0.25])
+    """
+    return _arrays.elementwise(_kernels.sphere_to_square, {"directions": (directions, 3)}, [2])[0]
+
+
+def square_to_sphere_pdf(directions: ArrayLike) -> Floats:
+    """The density of `square_to_sphere`'s directions per solid angle, 1/4π everywhere.
+
+    Parameters
+    ----------
+    directions : array_like, shape (..., 3)
+        Unit vectors.
+
+    Returns
+    -------
+    ndarray, shape (...)
+
+    Raises
+    ------
+    TypeError, ValueError
+        If `directions` is not real or not of three components.
+
+    Examples
+    --------
+    >>> square_to_sphere_pdf([0.0, 0.0, -1.0])
+    array(0.07957747)
+    """
+    return _arrays.elementwise(_kernels.square_to_sphere_pdf, {"directions": (directions, 3)}, [0])[0]
+
+
+def square_to_cone(u: ArrayLike, angle: ArrayLike, method: DiskMethod = "concentric") -> Floats:
+    """Points of the unit square onto the directions within an angle of z, areas in constant proportion.
+
+    Parameters
+    ----------
+    u : array_like, shape (..., 2)
+        In [0, 1].
+    angle : array_like, shape (...)
+        From the axis to the rim, in (0, π]: π/2 is the hemisphere, π the sphere. Others give NaN.
+    method : {"concentric", "polar"}
+        The disk map underneath, see `square_to_disk`.
+
+    Returns
+    -------
+    ndarray, shape (..., 3)
+        Unit directions.
+
+    Raises
+    ------
+    TypeError, ValueError
+        If an argument is not real or of other shape, or the method is unknown.
+
+    Notes
+    -----
+    Within 4 rounding units of 1 of the exact direction, and x and y to a few rounding units of the cone's width: a cone
+    of 1e-15 is as even as the hemisphere, in float32 too.
+
+    References
+    ----------
+    P. Shirley, C. Wang, K. Zimmerman, *Monte Carlo techniques for direct lighting calculations*, 1996.
+
+    Examples
+    --------
+    >>> square_to_cone([[0.5, 0.5], [1.0, 0.5]], np.pi / 2).round(15) + 0.0
+    array([[0., 0., 1.],
+           [1., 0., 0.]])
+    """
+    _arrays.choice("method", method, ("concentric", "polar"))
+    return _arrays.elementwise(_kernels.square_to_cone, {"u": (u, 2)}, [3], method, knobs={"angle": angle})[0]
+
+
+def cone_to_square(directions: ArrayLike, angle: ArrayLike, method: DiskMethod = "concentric") -> Floats:
+    """The inverse of `square_to_cone`.
+
+    Parameters
+    ----------
+    directions : array_like, shape (..., 3)
+        Unit directions in the cone.
+    angle : array_like, shape (...)
+        From the axis to the rim, in (0, π].
+    method : {"concentric", "polar"}
+        That of the map which is inverted.
+
+    Returns
+    -------
+    ndarray, shape (..., 2)
+        In [0, 1).
+
+    Raises
+    ------
+    TypeError, ValueError
+        If an argument is not real or of other shape, or the method is unknown.
+
+    Notes
+    -----
+    Back on the square within 8 rounding units of 1 for cones up to the hemisphere. Towards the whole sphere the rim
+    shrinks to the lower pole, where all directions are one.
+
+    Examples
+    --------
+    >>> cone_to_square([0.0, 0.0, 1.0], 0.5)
+    array([0.5, 0.5])
+    """
+    _arrays.choice("method", method, ("concentric", "polar"))
+    given = {"directions": (directions, 3)}
+    return _arrays.elementwise(_kernels.cone_to_square, given, [2], method, knobs={"angle": angle})[0]
+
+
+def square_to_cone_pdf(directions: ArrayLike, angle: ArrayLike) -> Floats:
+    """The density of `square_to_cone`'s directions per solid angle: constant in the cone, 0 outside.
+
+    Parameters
+    ----------
+    directions : array_like, shape (..., 3)
+        Unit directions.
+    angle : array_like, shape (...)
+        From the axis to the rim, in (0, π].
+
+    Returns
+    -------
+    ndarray, shape (...)
+        1 / (4π sin²(angle / 2)) within the cone.
+
+    Raises
+    ------
+    TypeError, ValueError
+        If an argument is not real or of other shape.
+
+    Notes
+    -----
+    Cones up to the hemisphere are told from outside to 16 machine epsilons of their depth, whatever their size.
+
+    Examples
+    --------
+    >>> square_to_cone_pdf([[0.0, 0.0, 1.0], [1.0, 0.0, 0.0]], 0.5)
+    array([1.30010795, 0.        ])
+    """
+    given = {"directions": (directions, 3)}
+    return _arrays.elementwise(_kernels.square_to_cone_pdf, given, [0], knobs={"angle": angle})[0]
+
+
+def _towards(kernel: Callable[..., None], given: dict[str, tuple[ArrayLike, Any]], full_output: bool) -> Any:
+    found = DirectionSample(*_arrays.elementwise(kernel, given, [3, 0]))
+    return found if full_output else found.direction
+
+
+@overload
+def square_to_spherical_triangle(
+    u: ArrayLike, a: ArrayLike, b: ArrayLike, c: ArrayLike, *, full_output: Literal[False] = False
+) -> Floats: ...
+@overload
+def square_to_spherical_triangle(
+    u: ArrayLike, a: ArrayLike, b: ArrayLike, c: ArrayLike, *, full_output: Literal[True]
+) -> DirectionSample: ...
+def square_to_spherical_triangle(
+    u: ArrayLike, a: ArrayLike, b: ArrayLike, c: ArrayLike, *, full_output: bool = False
+) -> Floats | DirectionSample:
+    """Points of the unit square onto the directions towards a triangle, solid angles in constant proportion.
+
+    Parameters
+    ----------
+    u : array_like, shape (..., 2)
+        In [0, 1]: the share of the area up to an arc through `b`, and the place along that arc (0 is `b`).
+    a, b, c : array_like, shape (..., 3)
+        The corners as seen from the origin, of any length, either way round. Leading axes broadcast.
+    full_output : bool
+        Also give the solid angle.
+
+    Returns
+    -------
+    ndarray, shape (..., 3), or DirectionSample
+        Unit directions.
+
+    Raises
+    ------
+    TypeError, ValueError
+        If an argument is not real or of other shape.
+
+    Notes
+    -----
+    The solid angle is right to a few rounding units of itself also where the triangle is small (given as exact
+    corners), and the directions to a few rounding units of 1. Triangles that see the origin in their plane, or of no
+    area, give NaN. Corners whose lengths, or the triangle's angular size, are below 1e-15 of each other leave float32's
+    range of squares (1e-120 in float64).
+
+    References
+    ----------
+    J. Arvo, *Stratified sampling of spherical triangles*, 1995.
+    A. van Oosterom, J. Strackee, *The solid angle of a plane triangle*, 1983.
+
+    Examples
+    --------
+    >>> found = square_to_spherical_triangle([0.0, 1.0], [1, 0, 0], [0, 1, 0], [0, 0, 1], full_output=True)
+    >>> found.direction.round(15) + 0.0, found.solid_angle
+    (array([1., 0., 0.]), array(1.57079633))
+    """
+    given = {"u": (u, 2), "a": (a, 3), "b": (b, 3), "c": (c, 3)}
+    return _towards(_kernels.square_to_spherical_triangle, given, full_output)  # type: ignore[no-any-return]
+
+
+def spherical_triangle_to_square(directions: ArrayLike, a: ArrayLike, b: ArrayLike, c: ArrayLike) -> Floats:
+    """The inverse of `square_to_spherical_triangle`.
+
+    Parameters
+    ----------
+    directions : array_like, shape (..., 3)
+        Unit directions in the triangle.
+    a, b, c : array_like, shape (..., 3)
+        The corners as seen from the origin.
+
+    Returns
+    -------
+    ndarray, shape (..., 2)
+        In [0, 1); at `b` itself, where all u meet, u is arbitrary.
+
+    Raises
+    ------
+    TypeError, ValueError
+        If an argument is not real or of other shape.
+
+    Notes
+    -----
+    A direction's rounding counts over the triangle's angular size.
+
+    Examples
+    --------
+    >>> corners = [1, 0, 0], [0, 1, 0], [0, 0, 1]
+    >>> spherical_triangle_to_square(square_to_spherical_triangle([0.25, 0.75], *corners), *corners)
+    array([0.25, 0.75])
+    """
+    given = {"directions": (directions, 3), "a": (a, 3), "b": (b, 3), "c": (c, 3)}
+    return _arrays.elementwise(_kernels.spherical_triangle_to_square, given, [2])[0]
+
+
+def square_to_spherical_triangle_pdf(directions: ArrayLike, a: ArrayLike, b: ArrayLike, c: ArrayLike) -> Floats:
+    """The density of `square_to_spherical_triangle`'s directions per solid angle.
+
+    Parameters
+    ----------
+    directions : array_like, shape (..., 3)
+        Unit directions.
+    a, b, c : array_like, shape (..., 3)
+        The corners as seen from the origin.
+
+    Returns
+    -------
+    ndarray, shape (...)
+        One over the triangle's solid angle towards it, else 0.
+
+    Raises
+    ------
+    TypeError, ValueError
+        If an argument is not real or of other shape.
+
+    Notes
+    -----
+    The sides count as inside, four machine epsilons wide.
+
+    Examples
+    --------
+    >>> square_to_spherical_triangle_pdf([[0.6, 0.48, 0.64], [0, 0.6, -0.8]], [1, 0, 0], [0, 1, 0], [0, 0, 1])
+    array([0.63661977, 0.        ])
+    """
+    given = {"directions": (directions, 3), "a": (a, 3), "b": (b, 3), "c": (c, 3)}
+    return _arrays.elementwise(_kernels.square_to_spherical_triangle_pdf, given, [0])[0]
+
+
+@overload
+def square_to_spherical_rectangle(
+    u: ArrayLike, center: ArrayLike, edge_u: ArrayLike, edge_v: ArrayLike, *, full_output: Literal[False] = False
+) -> Floats: ...
+@overload
+def square_to_spherical_rectangle(
+    u: ArrayLike, center: ArrayLike, edge_u: ArrayLike, edge_v: ArrayLike, *, full_output: Literal[True]
+) -> DirectionSample: ...
+def square_to_spherical_rectangle(
+    u: ArrayLike, center: ArrayLike, edge_u: ArrayLike, edge_v: ArrayLike, *, full_output: bool = False
+) -> Floats | DirectionSample:
+    """Points of the unit square onto the directions towards a rectangle, solid angles in constant proportion.
+
+    Parameters
+    ----------
+    u : array_like, shape (..., 2)
+        In [0, 1]: along `edge_u` and along `edge_v`.
+    center : array_like, shape (..., 3)
+        The rectangle's centre as seen from the origin.
+    edge_u, edge_v : array_like, shape (..., 3)
+        Its full edges, perpendicular. Leading axes broadcast.
+    full_output : bool
+        Also give the solid angle.
+
+    Returns
+    -------
+    ndarray, shape (..., 3), or DirectionSample
+        Unit directions.
+
+    Raises
+    ------
+    TypeError, ValueError
+        If an argument is not real or of other shape.
+
+    Notes
+    -----
+    The solid angle is right to a few rounding units of itself, and directions to a few rounding units of 1, for
+    small, distant, wide and grazing rectangles alike, in float32 too. Edges more than 1e-3 from perpendicular, and an
+    origin in the rectangle's plane, give NaN.
+
+    References
+    ----------
+    C. Ureña, M. Fajardo, A. King, *An area-preserving parametrization for spherical rectangles*, 2013.
+
+    Examples
+    --------
+    >>> found = square_to_spherical_rectangle([0.5, 0.5], [0, 0, 1], [2, 0, 0], [0, 2, 0], full_output=True)
+    >>> found.direction, found.solid_angle
+    (array([0., 0., 1.]), array(2.0943951))
+    """
+    given = {"u": (u, 2), "center": (center, 3), "edge_u": (edge_u, 3), "edge_v": (edge_v, 3)}
+    return _towards(_kernels.square_to_spherical_rectangle, given, full_output)  # type: ignore[no-any-return]
+
+
+def spherical_rectangle_to_square(
+    directions: ArrayLike, center: ArrayLike, edge_u: ArrayLike, edge_v: ArrayLike
+) -> Floats:
+    """The inverse of `square_to_spherical_rectangle`.
+
+    Parameters
+    ----------
+    directions : array_like, shape (..., 3)
+        Unit directions towards the rectangle; others are moved to its nearest edge.
+    center, edge_u, edge_v : array_like, shape (..., 3)
+        Its centre as seen from the origin, and its full edges.
+
+    Returns
+    -------
+    ndarray, shape (..., 2)
+        In [0, 1); NaN for directions away from the plane.
+
+    Raises
+    ------
+    TypeError, ValueError
+        If an argument is not real or of other shape.
+
+    Notes
+    -----
+    A direction's rounding counts over the rectangle's angular size.
+
+    Examples
+    --------
+    >>> spherical_rectangle_to_square([0, 0, 1], [0, 0, 1], [2, 0, 0], [0, 2, 0])
+    array([0.5, 0.5])
+    """
+    given = {"directions": (directions, 3), "center": (center, 3), "edge_u": (edge_u, 3), "edge_v": (edge_v, 3)}
+    return _arrays.elementwise(_kernels.spherical_rectangle_to_square, given, [2])[0]
+
+
+def square_to_spherical_rectangle_pdf(
+    directions: ArrayLike, center: ArrayLike, edge_u: ArrayLike, edge_v: ArrayLike
+) -> Floats:
+    """The density of `square_to_spherical_rectangle`'s directions per solid angle.
+
+    Parameters
+    ----------
+    directions : array_like, shape (..., 3)
+        Unit directions.
+    center, edge_u, edge_v : array_like, shape (..., 3)
+        The rectangle's centre as seen from the origin, and its full edges.
+
+    Returns
+    -------
+    ndarray, shape (...)
+        One over the rectangle's solid angle towards it, else 0.
+
+    Raises
+    ------
+    TypeError, ValueError
+        If an argument is not real or of other shape.
+
+    Notes
+    -----
+    The edges count as inside, as wide as a direction's rounding.
+
+    Examples
+    --------
+    >>> square_to_spherical_rectangle_pdf([[0, 0, 1], [0, 0, -1]], [0, 0, 1], [2, 0, 0], [0, 2, 0])
+    array([0.47746483, 0.        ])
+    """
+    given = {"directions": (directions, 3), "center": (center, 3), "edge_u": (edge_u, 3), "edge_v": (edge_v, 3)}
+    return _arrays.elementwise(_kernels.square_to_spherical_rectangle_pdf, given, [0])[0]
+
+
+def area_to_solid_angle(
+    density: ArrayLike,
+    points: ArrayLike,
+    normals: ArrayLike,
+    origins: ArrayLike = (0.0, 0.0, 0.0),
+    *,
+    inverse: bool = False,
+) -> Floats:
+    """A density per area of a surface as one per solid angle of a point that sees it.
+
+    Parameters
+    ----------
+    density : array_like, shape (...)
+        Per area at `points` (`inverse`: per solid angle).
+    points, normals : array_like, shape (..., 3)
+        On the surface; normals need not be unit, and point either way.
+    origins : array_like, shape (..., 3)
+        Where the surface is seen from. Leading axes broadcast.
+    inverse : bool
+        From solid angle to area instead.
+
+    Returns
+    -------
+    ndarray, shape (...)
+        `density` r² / abs(cos θ): infinite where the surface is seen edge-on.
+
+    Raises
+    ------
+    TypeError, ValueError
+        If an argument is not real or of other shape.
+
+    Notes
+    -----
+    Right to 8 rounding units of itself as far as `points - origins` is exact; distances of 1e-18 and 1e18 hold.
+
+    References
+    ----------
+    M. F. Cohen, J. R. Wallace, *Radiosity and Realistic Image Synthesis*, 1993, section 2.4.
+
+    Examples
+    --------
+    >>> area_to_solid_angle(0.25, [0, 0, 2], [0, 0, 1])
+    array(1.)
+    """
+    given = {"density": (density, 0), "points": (points, 3), "normals": (normals, 3), "origins": (origins, 3)}
+    return _arrays.elementwise(_kernels.area_to_solid_angle, given, [0], bool(inverse))[0]
