@@ -32,12 +32,15 @@ pub struct SphericalTriangle<T> {
     solid_angle: T,
 }
 
-/// Unit vectors along `p` and `q`, and the difference of these with the digits of `q - p`.
+/// The difference of the unit vectors along `p` and `q`, with the digits of `q - p` where these are of like length.
 #[inline(always)]
 fn unit_difference<T: Real>(p: Vec3<T>, q: Vec3<T>) -> Vec3<T> {
     let (p_length, q_length) = (p.length(), q.length());
     let edge = q + -p;
     let longer = edge.dot(q + p) / (p_length + q_length);
+    if longer.abs() * T::of(2.0) > Lanes::min(p_length, q_length) {
+        return q.normalize() + -p.normalize();
+    }
     (edge * p_length + -(p * longer)) * (T::one() / (p_length * q_length))
 }
 
@@ -108,9 +111,14 @@ impl<T: Real> SphericalTriangle<T> {
         // The plane through b and d meets the side at the angle s of a cos s + tangent sin s.
         let across = self.b.cross(step);
         let (mut x, mut y) = (across.dot(self.tangent), across.dot(self.ab));
-        if y < zero {
+        // Of the two points where it does, the one that d is on the way to.
+        // Seen from b, along which it has no part: lengths of rounded directions tell nothing.
+        let way = step + -(self.b * self.b.dot(step));
+        if (self.tangent * y + -(self.ab * x)).dot(way) < zero {
             (x, y) = (-x, -y);
         }
+        // A direction beside the first side is moved onto it.
+        let y = if y < zero { zero } else { y };
         let r = x.abs() + y.abs();
         let (x, y) = if r > zero { (x / r, y / r) } else { (one, zero) };
         // tan(s / 2) = sin / (1 + cos), from the end without cancellation.
@@ -138,7 +146,7 @@ impl<T: Real> SphericalTriangle<T> {
             c.cross(-self.ac).normalize().dot(d + -c),
         ]
         .map(|x| x * sign);
-        let margin = -T::of(4.0) * T::EPSILON;
+        let margin = -T::of(16.0) * T::EPSILON;
         let outside = ab < margin || bc < margin || ca < margin;
         let even = T::one() / self.solid_angle + (ab + bc + ca) * T::zero();
         if outside { T::zero() } else { even }

@@ -47,7 +47,7 @@ def test_extremes_side_by_side(dtype):
 
 
 def test_bad_weights_and_numbers():
-    with pytest.raises(ValueError, match="weights: .* at 1"):
+    with pytest.raises(ValueError, match=r"weights: .* at 1"):
         sl.sampling.alias_table([1.0, -1.0])
     with pytest.raises(ValueError, match="weights: expected a positive one"):
         sl.sampling.alias_table([0.0])

@@ -38,5 +38,7 @@ def test_there_and_back(dtype, scale):
 
 
 def test_edge_on_is_infinite_and_nan_stays_in_its_row():
-    got = sl.sampling.area_to_solid_angle(1.0, [[1, 0, 0], [1, 0, 0], [np.nan, 0, 0]], [[0, 1, 0], [1, 0, 0], [1, 0, 0]])
+    got = sl.sampling.area_to_solid_angle(
+        1.0, [[1, 0, 0], [1, 0, 0], [np.nan, 0, 0]], [[0, 1, 0], [1, 0, 0], [1, 0, 0]]
+    )
     assert np.isposinf(got[0]) and got[1] == 1 and np.isnan(got[2])

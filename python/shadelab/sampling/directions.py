@@ -279,10 +279,10 @@ def square_to_spherical_triangle(
 
     Notes
     -----
-    The solid angle is right to a few rounding units of itself also where the triangle is small (given as exact
-    corners), and the directions to a few rounding units of 1. Triangles that see the origin in their plane, or of no
-    area, give NaN. Corners whose lengths, or the triangle's angular size, are below 1e-15 of each other leave float32's
-    range of squares (1e-120 in float64).
+    The solid angle is right to 32 rounding units of itself, or of the longest side's square where the triangle is a
+    sliver, however small it is; the directions to a few rounding units of 1. Triangles that see the origin in their
+    plane, or of no area, give NaN. Angular sizes, and ratios of the corners' distances, below 1e-15 leave the range of
+    float32's squares (1e-120 in float64).
 
     References
     ----------
@@ -355,7 +355,7 @@ def square_to_spherical_triangle_pdf(directions: ArrayLike, a: ArrayLike, b: Arr
 
     Notes
     -----
-    The sides count as inside, four machine epsilons wide.
+    The sides count as inside, 16 machine epsilons wide.
 
     Examples
     --------
