@@ -31,10 +31,11 @@ pub fn philox4x32(mut counter: [u32; 4], mut key: [u32; 2]) -> [u32; 4] {
 #[inline(always)]
 pub fn fraction<T: Real>(high: u32, low: u32) -> T {
     if size_of::<T>() == 4 {
-        T::of(f64::from(high >> 8) * (1.0 / (1u64 << 24) as f64))
+        bytemuck::cast((high >> 8) as i32 as f32 * (1.0 / (1u32 << 24) as f32))
     } else {
-        let digits = (u64::from(high) << 32 | u64::from(low)) >> 11;
-        T::of(digits as f64 * (1.0 / (1u64 << 53) as f64))
+        // Both parts and their sum are exact; the upper and the lower digits convert lane by lane.
+        let low = f64::from((low >> 11) as i32) * (1.0 / (1u64 << 53) as f64);
+        T::of(f64::from(high) * (1.0 / (1u64 << 32) as f64) + low)
     }
 }
 
@@ -60,6 +61,12 @@ impl Generator {
         let w = self.bits(pixel, sample, dimension / 2);
         let at = (dimension % 2 * 2) as usize;
         fraction(w[at], w[at + 1])
+    }
+    /// The numbers of dimensions `2 block` and `2 block + 1` for the price of one.
+    #[inline(always)]
+    pub fn pair<T: Real>(self, pixel: u64, sample: u32, block: u32) -> [T; 2] {
+        let w = self.bits(pixel, sample, block);
+        [fraction(w[0], w[1]), fraction(w[2], w[3])]
     }
     /// Four numbers in [0, 1) for the price of one; in f64 they have 32 digits.
     #[inline(always)]

@@ -1,7 +1,9 @@
 //! Generators, sequences, and warps with their densities.
 //!
 //! - [`generator`]: a random number for every (seed, pixel, sample, dimension)
-//! - [`sobol`]: Sobol' sequences and Owen's scrambling (`joe_kuo` holds their direction numbers)
+//! - [`sobol`], [`halton`], [`r2`]: sequences (`joe_kuo` and `primes` hold their constants), and Owen's scrambling
+//! - [`stratified`], [`latin_hypercube`], [`multi_jittered`]: point sets of a given size
+//! - [`sampler`]: any of these for a pixel's samples, for kernels
 //! - [`disk`], [`triangle`], [`sphere`], [`hemisphere`], [`cosine_hemisphere`], [`cone`], [`spherical_triangle`],
 //!   [`spherical_rectangle`]: the unit square warped onto each, with inverses and densities
 //! - [`area_to_solid_angle`]: a density of another measure
@@ -13,15 +15,25 @@ pub mod cone;
 pub mod cosine_hemisphere;
 pub mod disk;
 pub mod generator;
+pub mod halton;
+mod hash;
 pub mod hemisphere;
 mod joe_kuo;
+pub mod latin_hypercube;
+pub mod multi_jittered;
+mod primes;
+pub mod r2;
+pub mod sampler;
 pub mod sobol;
 pub mod sphere;
 pub mod spherical_rectangle;
 pub mod spherical_triangle;
+pub mod stratified;
 pub mod tabulated;
 pub mod triangle;
 
+use crate::dispatch;
+use crate::parallel::{self, Interrupted, Rows, Watch};
 use crate::real::Real;
 
 /// A point of the closed unit square as it is; NaN beyond it, where no warp holds.
@@ -29,4 +41,53 @@ use crate::real::Real;
 fn in_square<T: Real>(u: [T; 2]) -> [T; 2] {
     let unit = T::zero()..=T::one();
     if unit.contains(&u[0]) && unit.contains(&u[1]) { u } else { [T::NAN; 2] }
+}
+
+/// `f` of every item.
+fn map<T: Real, const A: usize, const B: usize>(
+    watch: &mut dyn Watch,
+    input: &[[T; A]],
+    out: &mut [[T; B]],
+    f: impl Fn([T; A]) -> [T; B] + Sync,
+) -> Result<(), Interrupted> {
+    parallel::for_each(
+        watch,
+        (input, out),
+        1 << 14,
+        |_, (input, out)| dispatch!(_s => map_body(input, out, &f)),
+    )
+}
+
+#[inline(always)]
+fn map_body<T: Real, const A: usize, const B: usize>(
+    input: &[[T; A]],
+    out: &mut [[T; B]],
+    f: &impl Fn([T; A]) -> [T; B],
+) {
+    for i in 0..out.len() {
+        out[i] = f(input[i]);
+    }
+}
+
+/// `f(i, row)` for every row `i` of `width` columns.
+fn rows<T: Real>(
+    watch: &mut dyn Watch,
+    out: &mut [T],
+    width: usize,
+    f: impl Fn(u64, &mut [T]) + Sync,
+) -> Result<(), Interrupted> {
+    let piece = ((1 << 13) / width.max(1)).max(1);
+    parallel::for_each(
+        watch,
+        Rows { data: out, width },
+        piece,
+        |first, rows| dispatch!(_s => rows_body(first as u64, rows, &f)),
+    )
+}
+
+#[inline(always)]
+fn rows_body<T: Real>(first: u64, rows: Rows<'_, T>, f: &impl Fn(u64, &mut [T])) {
+    for (i, row) in rows.data.chunks_exact_mut(rows.width.max(1)).enumerate() {
+        f(first + i as u64, row);
+    }
 }

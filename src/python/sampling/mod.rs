@@ -11,12 +11,6 @@ use pyo3::prelude::*;
 #[pymodule]
 pub mod sampling {
     #[pymodule_export]
-    use super::generators::philox;
-    #[pymodule_export]
-    use super::generators::uniform;
-    #[pymodule_export]
-    const SOBOL_DIMENSIONS: usize = super::sequences::SOBOL_DIMENSIONS;
-    #[pymodule_export]
     use super::directions::{
         area_to_solid_angle, cone_to_square, sphere_to_square, spherical_rectangle_to_square,
         spherical_triangle_to_square, square_to_cone, square_to_cone_pdf, square_to_sphere,
@@ -24,7 +18,11 @@ pub mod sampling {
         square_to_spherical_triangle, square_to_spherical_triangle_pdf,
     };
     #[pymodule_export]
-    use super::sequences::sobol;
+    use super::generators::{philox, sampler, sampler_names, uniform};
+    #[pymodule_export]
+    use super::sequences::{halton, latin_hypercube, multi_jittered, r2, sobol, stratified};
+    #[pymodule_export]
+    const SEQUENCE_DIMENSIONS: usize = super::sequences::SEQUENCE_DIMENSIONS;
     #[pymodule_export]
     use super::tabulated::{Table1D, Table2D, alias_table, sample_alias};
     #[pymodule_export]
