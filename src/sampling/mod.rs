@@ -43,32 +43,6 @@ fn in_square<T: Real>(u: [T; 2]) -> [T; 2] {
     if unit.contains(&u[0]) && unit.contains(&u[1]) { u } else { [T::NAN; 2] }
 }
 
-/// `f` of every item.
-fn map<T: Real, const A: usize, const B: usize>(
-    watch: &mut dyn Watch,
-    input: &[[T; A]],
-    out: &mut [[T; B]],
-    f: impl Fn([T; A]) -> [T; B] + Sync,
-) -> Result<(), Interrupted> {
-    parallel::for_each(
-        watch,
-        (input, out),
-        1 << 14,
-        |_, (input, out)| dispatch!(_s => map_body(input, out, &f)),
-    )
-}
-
-#[inline(always)]
-fn map_body<T: Real, const A: usize, const B: usize>(
-    input: &[[T; A]],
-    out: &mut [[T; B]],
-    f: &impl Fn([T; A]) -> [T; B],
-) {
-    for i in 0..out.len() {
-        out[i] = f(input[i]);
-    }
-}
-
 /// `f(i, row)` for every row `i` of `width` columns.
 fn rows<T: Real>(
     watch: &mut dyn Watch,
