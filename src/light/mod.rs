@@ -3,6 +3,7 @@
 //! - [`sample`]: points on lights as seen from elsewhere, their densities, rays that meet them
 //! - [`polygon`]: light from a polygon in closed form: solid angle, irradiance, higher moments of the cosine
 //! - [`irradiance`]: of each light, in closed form
+//! - [`tree`]: which of many lights to draw from
 //! - [`unshadowed`]: the radiance that surfaces reflect, nothing in between
 //!
 //! The lights themselves: [`rect`], [`disk`], [`sphere`], [`polygon_light`], [`spot`]; [`circle`] has the closed forms
@@ -18,6 +19,7 @@ pub(crate) mod rect;
 pub mod sample;
 pub(crate) mod sphere;
 pub(crate) mod spot;
+pub mod tree;
 pub mod unshadowed;
 
 use crate::real::Real;

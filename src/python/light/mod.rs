@@ -1,5 +1,7 @@
 //! Bindings of `light`.
 
+mod tree;
+
 use crate::brdf::metallic_roughness::Materials;
 use crate::light::Light;
 use crate::light::disk::Disk;
@@ -127,6 +129,8 @@ impl<'py, T: Real + Element> ReceiverArrays<'py, T> {
 
 #[pymodule]
 pub mod light {
+    #[pymodule_export]
+    use super::tree::{chance, choose, chooser};
     use super::{ReceiverArrays, ReceiverTuple, double_corners, lights, one_light};
     use crate::light::{irradiance as received, polygon, sample, unshadowed as direct};
     use crate::python::array::{In, Out, run};
