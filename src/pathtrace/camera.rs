@@ -78,18 +78,19 @@ impl<T: Real> Pose<T> {
         let direction = (through - off * self.inverse_focus).normalize();
         Ray::new((p.eye + off).to_array(), direction.to_array())
     }
-    /// Where a point is seen: pixels to the right and down, and its distance along the axis. `[NaN; 2]` in the eye's plane.
+    /// The distance of a point along the axis.
     #[inline(always)]
-    pub fn project(&self, point: Vec3<T>) -> ([T; 2], T) {
-        let p = &self.pinhole;
-        let to = point - p.eye;
-        // corner, right and down span space: solve  to = depth · (corner + x right + y down)  by Cramer's rule.
-        let (normal, other) = (p.right.cross(p.down), p.corner.cross(p.down));
-        let depth = to.dot(normal) / p.corner.dot(normal);
-        let (x, y) = (-to.dot(other), -to.dot(p.right.cross(p.corner)));
-        let w = to.dot(normal);
-        let at = if w == T::zero() { [T::NAN; 2] } else { [x / w, y / w] };
-        (at, depth)
+    pub fn depth(&self, point: Vec3<T>) -> T {
+        let axis = self.pinhole.right.cross(self.pinhole.down);
+        (point - self.pinhole.eye).dot(axis) / self.pinhole.corner.dot(axis)
+    }
+    /// Where in the picture a direction from the eye is seen, in pixels to the right and down; not finite in the eye's plane.
+    #[inline(always)]
+    pub fn seen(&self, direction: Vec3<T>) -> [T; 2] {
+        // direction = w (corner + x right + y down), by Cramer's rule.
+        let Pinhole { corner, right, down, .. } = self.pinhole;
+        let w = direction.dot(right.cross(down));
+        [direction.dot(down.cross(corner)) / w, direction.dot(corner.cross(right)) / w]
     }
 }
 

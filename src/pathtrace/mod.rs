@@ -1,5 +1,6 @@
 //! The references: ray casting, direct light with its error, path tracing.
 //!
+//! - [`aov`]: what is seen beside light
 //! - [`camera`]: rays through lens and shutter
 //! - [`filter`]: pixel filters, as where samples lie
 //! - [`film`]: what is kept of a pixel's samples
@@ -7,6 +8,7 @@
 //! - [`direct_light`]: light from the lights, once reflected, with shadows, at given points
 //! - [`path_trace`]: all light paths
 
+pub mod aov;
 pub mod camera;
 pub mod direct_light;
 mod emitters;

@@ -1,6 +1,7 @@
 """Ray casting, direct light, path tracing: the references, each with its own error."""
 
-from . import cameras, casting, direct, filters, paths
+from . import aov, cameras, casting, direct, filters, paths
+from .aov import *  # noqa: F403
 from .cameras import *  # noqa: F403
 from .casting import *  # noqa: F403
 from .direct import *  # noqa: F403
@@ -8,6 +9,7 @@ from .filters import *  # noqa: F403
 from .paths import *  # noqa: F403
 
 __all__: list[str] = []
+__all__ += aov.__all__
 __all__ += cameras.__all__
 __all__ += casting.__all__
 __all__ += direct.__all__

@@ -1,5 +1,6 @@
 //! Bindings of `pathtrace`, a file for each of its faces.
 
+mod aov;
 pub(super) mod camera;
 mod casting;
 mod direct;
@@ -18,6 +19,8 @@ fn pinhole<T: Real>([eye, corner, right, down]: [[f64; 3]; 4]) -> Pinhole<T> {
 
 #[pymodule]
 pub mod pathtrace {
+    #[pymodule_export]
+    use super::aov::aovs;
     #[pymodule_export]
     use super::camera::camera_rays;
     #[pymodule_export]

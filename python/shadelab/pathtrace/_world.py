@@ -1,0 +1,88 @@
+"""A scene as kernels take it: at one time, or at the times at which samples see it while the shutter is open."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from typing import TYPE_CHECKING, Any, NamedTuple
+
+import numpy as np
+from numpy.typing import DTypeLike
+
+from .. import _arrays
+from ..accel import BVH
+from ._common import check_bvh
+
+if TYPE_CHECKING:
+    from ..scene import Scene, SceneArrays
+
+# Moments at which moving scenes are traced, in one run, at most.
+_MOMENTS = 64
+
+
+class Moment(NamedTuple):
+    """Samples that see the scene alike."""
+
+    start: int
+    samples: int
+    arrays: SceneArrays
+    bvh: BVH
+    shutter: tuple[float, float] | None
+    """What the camera's own shutter becomes; None leaves it."""
+
+
+def precision(dtype: DTypeLike) -> np.dtype[Any]:
+    made = np.dtype(dtype)
+    if made not in (np.dtype(np.float32), np.dtype(np.float64)):
+        raise TypeError(f"dtype: expected float32 or float64, got {made}")
+    return made
+
+
+class World:
+    """The scene and its hierarchy at time 0, refitted at others."""
+
+    def __init__(self, scene: Scene, bvh: BVH | None, dtype: np.dtype[Any]) -> None:
+        self.scene, self.dtype = scene, dtype
+        self.arrays = scene.flatten(dtype)
+        if bvh is None:
+            bvh = BVH(self.arrays.positions, self.arrays.faces)
+        else:
+            check_bvh(bvh)
+            own, mine = (bvh._positions, bvh._faces), (self.arrays.positions, self.arrays.faces)
+            if own[0].dtype != dtype or not all(np.array_equal(a, b) for a, b in zip(own, mine, strict=True)):
+                raise ValueError(f"bvh: expected one of the flattened scene in {dtype}")
+        self.bvh = bvh
+        _arrays.warn_if_coarse(self.arrays.positions, dtype, 5)
+
+    def at(self, time: float) -> tuple[SceneArrays, BVH]:
+        """The scene at a time in [0, 1]."""
+        if time == 0 or not self.scene.moves:
+            return self.arrays, self.bvh
+        arrays = self.scene.flatten(self.dtype, time)
+        return arrays, self.bvh.refit(arrays.positions)
+
+    def moments(self, start: int, samples: int, seed: int) -> Iterator[Moment]:
+        """Samples `start` … `start + samples` by the moments at which they see the scene.
+
+        A still scene has one, and each ray has a time of its own. Where things move, moments are a van der Corput
+        sequence over the time that the shutter is open, shifted by chance: any run of them is spread evenly, and each
+        by itself is even over the time, so that means are unbiased.
+        """
+        opened, closed = self.scene.camera.shutter
+        if samples == 0 or not self.scene.moves:
+            yield Moment(start, samples, self.arrays, self.bvh, None)
+            return
+        if opened == closed:
+            arrays, bvh = self.at(opened)
+            yield Moment(start, samples, arrays, bvh, None)
+            return
+        each = -(-samples // _MOMENTS)
+        shift = float(np.random.Generator(np.random.Philox(key=seed)).random())
+        for first in range(start, start + samples, each):
+            time = opened + (closed - opened) * ((_reversed_digits(first // each) + shift) % 1.0)
+            arrays, bvh = self.at(time)
+            yield Moment(first, min(each, start + samples - first), arrays, bvh, (time, time))
+
+
+def _reversed_digits(i: int) -> float:
+    """The binary digits of `i` after the point, the lowest first."""
+    return int(f"{i:032b}"[::-1], 2) / 2**32
