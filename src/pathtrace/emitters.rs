@@ -51,6 +51,25 @@ impl Emitters {
         self.faces[at.min(self.faces.len() - 1)] as usize
     }
     #[inline(always)]
+    pub fn len(&self) -> usize {
+        self.faces.len()
+    }
+    /// The `i`-th emitting face.
+    #[inline(always)]
+    pub fn face(&self, i: usize) -> usize {
+        self.faces[i] as usize
+    }
+    /// Which of the emitting faces this is.
+    #[inline(always)]
+    pub fn place(&self, face: usize) -> usize {
+        self.faces.partition_point(|&f| (f as usize) < face)
+    }
+    /// Area times brightness of the `i`-th.
+    #[inline(always)]
+    pub fn power(&self, i: usize) -> f64 {
+        self.cumulative[i] - if i == 0 { 0.0 } else { self.cumulative[i - 1] }
+    }
+    #[inline(always)]
     pub fn total(&self) -> f64 {
         self.cumulative.last().copied().unwrap_or(0.0)
     }

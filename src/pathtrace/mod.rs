@@ -10,19 +10,24 @@
 
 pub mod aov;
 pub mod camera;
+mod diffuse;
 pub mod direct_light;
+mod draws;
 mod emitters;
 pub(crate) mod film;
 pub mod filter;
+mod lighting;
 pub mod path_trace;
 pub mod ray_cast;
 mod surface;
+mod wave;
 
 use crate::accel::Ray;
 use crate::real::Real;
 use crate::vec::Vec3;
 pub use emitters::Emitters;
 use film::Tally;
+pub use lighting::Selection;
 pub use surface::Surfaces;
 
 /// A pinhole: pixel coordinates (x, y) look along `corner + x · right + y · down`.

@@ -1,261 +1,294 @@
 //! Path tracing: every light path up to a number of reflections, by chance, without bias.
 //!
-//! At each surface every light is asked directly (next-event estimation), and the path goes on in a direction of the
-//! material. Area lights and emitting faces can be reached in both ways, which the power heuristic weighs. From the
-//! fourth reflection on, paths that carry little end by Russian roulette. Rectangles are seen from the side that
+//! At each surface lights are asked directly (next-event estimation), and the path goes on in a direction of the
+//! material. Area lights and emitting faces can be reached in both ways, which the power heuristic weighs; or one way
+//! alone is taken. Paths that carry little end by Russian roulette. Rectangles are seen from the side that
 //! shines, and stop the path there; from behind they are not there, and they shade nothing. Surfaces have two sides.
-//! The pixel is a box: samples are even over it. Random numbers come from pixel, sample and seed alone.
+//! Random numbers come from pixel, sample and seed alone.
+//!
+//! Paths of a square of pixels run together as a wave: the camera's rays of a pixel and its neighbours are traced
+//! in packets, later ones in one batch a depth, and diffusers are shaded eight at a time.
 //!
 //! J. T. Kajiya, *The rendering equation*, 1986; E. Veach, *Robust Monte Carlo methods for light transport
 //! simulation*, 1997, chapters 9 and 10.
 
-use super::emitters::brightness;
-use super::surface::Spot;
-use super::{Pinhole, Surfaces, Tally, leave};
-use crate::accel::Ray;
+use super::Surfaces;
+use super::camera::Camera;
+use super::draws::Draws;
+use super::film::Tally;
+use super::filter::Filter;
+use super::lighting::{Lighting, Selection};
+use super::wave::{Tracer, Wave, purpose};
+use crate::brdf::Bsdf;
+use crate::brdf::Row;
 use crate::dispatch;
-use crate::light::Light;
 use crate::parallel::{self, Interrupted, Watch};
-use crate::real::{Lanes, Real};
-use crate::sampling::generator::Generator;
-use crate::sampling::triangle::{Method, square_to_triangle};
+use crate::raster::picture::Picture;
+use crate::real::Real;
+use crate::sampling::sampler::Sampler;
 use crate::simd::Simd;
-use crate::vec::Vec3;
+use std::ops::Range;
+
+/// How light is looked for.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Strategy {
+    /// Directions evenly over the hemisphere; only beams are asked for directly.
+    Uniform,
+    /// Directions of the material; only beams are asked for directly.
+    Bsdf,
+    /// Lights are asked; what directions find counts only where lights could not be asked.
+    Light,
+    /// Both, weighed.
+    Mis,
+}
+
+impl Strategy {
+    #[inline(always)]
+    pub fn asks_lights(self) -> bool {
+        matches!(self, Strategy::Light | Strategy::Mis)
+    }
+}
 
 /// How a picture is sampled.
 #[derive(Clone, Copy, Debug)]
 pub struct Options {
+    /// Of the picture.
     pub width: usize,
     /// Samples `start` … `start + samples` of every pixel.
     pub samples: u32,
     pub start: u32,
     /// The most reflections of a path; 0 shows emission alone, 1 direct light.
     pub max_depth: u32,
+    /// Reflections before paths may end by chance.
+    pub roulette: u32,
     pub seed: u64,
+    pub strategy: Strategy,
+    pub sampler: Sampler,
+    pub selection: Selection,
+    /// Samples whose largest channel exceeds this are scaled down to it.
+    pub clamp: f64,
 }
 
-/// Reflections before paths may end by chance.
-const ROULETTE_FROM: u32 = 3;
-
-/// The weight of the strategy whose density is `own`, against the `other`'s (power heuristic).
-#[inline(always)]
-fn weight<T: Real>(own: T, other: T) -> T {
-    // By the quotient: squares of large densities overflow.
-    let ratio = other / own;
-    T::one() / (T::one() + ratio * ratio)
+/// Where the samples of a picture, or of some pixels, go.
+pub struct Film<'a, T> {
+    pub mean: &'a mut [[T; 3]],
+    /// Of the mean.
+    pub variance: &'a mut [[T; 3]],
+    /// How many samples outweighed all before them.
+    pub outliers: Option<&'a mut [i32]>,
+    /// Mean of what clamping took away.
+    pub removed: Option<&'a mut [[T; 3]]>,
 }
 
-/// Light that arrives at a surface if nothing is in between.
-struct Arrival<T> {
-    wi: Vec3<T>,
-    distance: T,
-    /// Radiance over density, or irradiance.
-    value: Vec3<T>,
-    /// Infinite where the material cannot find the light itself.
-    pdf: T,
+/// Paths a wave: its queues stay in the processor's own cache.
+const WAVE: usize = 1 << 11;
+/// Paths a task, if pixels have fewer samples: some milliseconds' worth.
+const TASK: usize = 1 << 13;
+/// Samples of a pixel that are taken without looking up; more are taken in several passes.
+const PASS: u32 = 1 << 14;
+
+/// The squares of pixels that tasks take, of a picture or of a list.
+struct Tiles<'a> {
+    width: usize,
+    height: usize,
+    /// Pixels a side.
+    side: [usize; 2],
+    columns: usize,
+    /// The pixels, if they are not those of the picture in their order.
+    list: Option<&'a [i32]>,
 }
 
-/// A path under way.
-struct Path<'a, 'b, T> {
-    scene: &'a Surfaces<'b, T>,
-    random: Generator,
-    pixel: u64,
-    sample: u32,
-    max_depth: u32,
-}
-
-impl<T: Real> Path<'_, '_, T> {
-    /// Four random numbers for this depth: block 0 is the direction's, the others the lights'.
-    #[inline(always)]
-    fn random(&self, depth: u32, block: usize) -> [T; 4] {
-        let blocks = 2 + self.scene.lights.len();
-        self.random.quad(self.pixel, self.sample, 1 + depth * blocks as u32 + block as u32)
+impl<'a> Tiles<'a> {
+    fn new(width: usize, count: usize, list: Option<&'a [i32]>, samples: u32) -> Self {
+        let (width, height) =
+            if list.is_some() { (count.max(1), count.min(1)) } else { (width, count / width.max(1)) };
+        let pixels = (TASK / samples.max(1) as usize).clamp(1, TASK);
+        let log = pixels.ilog2();
+        let side = if list.is_some() { [pixels, 1] } else { [1 << log.div_ceil(2), 1 << (log / 2)] };
+        Tiles { width, height, side, columns: width.div_ceil(side[0]), list }
     }
-
-    /// The radiance that arrives against `ray`.
+    fn count(&self) -> usize {
+        self.columns * self.height.div_ceil(self.side[1])
+    }
+    /// The first pixel of a tile, and its sides, cut at the border of the picture.
+    fn place(&self, i: usize) -> ([usize; 2], [usize; 2]) {
+        let first = [i % self.columns * self.side[0], i / self.columns * self.side[1]];
+        (first, [self.side[0].min(self.width - first[0]), self.side[1].min(self.height - first[1])])
+    }
+    /// The number in the picture of the pixel at a place.
     #[inline(always)]
-    fn trace<S: Simd>(&self, s: S, mut ray: Ray<T>) -> Vec3<T> {
-        let scene = self.scene;
-        let (zero, one) = (T::zero(), T::one());
-        let (mut sum, mut carried) = (Vec3::splat(zero), Vec3::splat(one));
-        // The density with which the last direction was drawn; infinite from the eye, where nothing else draws.
-        let mut pdf = T::INFINITY;
-        for depth in 0.. {
-            let (origin, direction) = (Vec3::from(ray.origin), Vec3::from(ray.direction));
-            let hit = scene.bvh.closest_hit(s, &ray);
-            if let Some((radiance, other)) = self.rect_before(origin, direction, hit.t) {
-                return sum + carried.times(radiance) * weight(pdf, other);
-            }
-            if !hit.is_hit() {
-                return sum + carried.times(scene.background);
-            }
-            let Some(spot) = scene.at(&hit, direction) else { return sum };
-            if brightness(spot.emission) > 0.0 {
-                let other = self.emitter_pdf(&spot, hit.t, direction);
-                sum = sum + carried.times(spot.emission.into()) * weight(pdf, other);
-            }
-            if depth == self.max_depth {
-                return sum;
-            }
-            sum = sum + carried.times(self.lights(s, &spot, depth));
-
-            // Go on in a direction of the material.
-            let u = self.random(depth, 0);
-            let wi = spot.lobes.sample(spot.wo, [u[0], u[1], u[2]]);
-            let out = spot.frame.world(wi);
-            pdf = spot.lobes.pdf(wi, spot.wo);
-            if !(wi.z > zero && pdf > zero && out.dot(spot.normal) > zero) {
-                return sum;
-            }
-            carried = carried.times(spot.lobes.eval(wi, spot.wo)) * (wi.z / pdf);
-            let largest = Lanes::max(Lanes::max(carried.x, carried.y), carried.z);
-            if depth >= ROULETTE_FROM {
-                let survival = Lanes::min(largest, T::of(0.95));
-                if u[3] >= survival {
-                    return sum;
-                }
-                carried = carried * (one / survival);
-            } else if !(largest > zero) {
-                return sum;
-            }
-            ray = leave(spot.point, spot.normal, out, scene.offset, T::INFINITY);
+    fn pixel(&self, x: usize, y: usize) -> usize {
+        match self.list {
+            Some(list) => list[x] as usize,
+            None => y * self.width + x,
         }
-        sum
-    }
-
-    /// The nearest rectangle that shines against the ray before `t`: its radiance and the density of drawing it.
-    #[inline(always)]
-    fn rect_before(&self, origin: Vec3<T>, direction: Vec3<T>, t: T) -> Option<(Vec3<T>, T)> {
-        let mut nearest = (t, None);
-        for light in self.scene.lights {
-            if let Light::Rect(rect) = light
-                && let Some(sighting) = rect.meet(origin, direction)
-                && sighting.distance < nearest.0
-            {
-                nearest = (sighting.distance, Some((rect.radiance, sighting.pdf)));
-            }
-        }
-        nearest.1
-    }
-
-    /// The density per solid angle with which an emitting point is drawn from `distance` away.
-    #[inline(always)]
-    fn emitter_pdf(&self, spot: &Spot<T>, distance: T, direction: Vec3<T>) -> T {
-        let per_area = T::of(brightness(spot.emission) / self.scene.emitters.total());
-        distance * (distance * per_area / direction.dot(spot.normal).abs())
-    }
-
-    /// Light from all lights and from emitting faces, reflected once.
-    #[inline(always)]
-    fn lights<S: Simd>(&self, s: S, spot: &Spot<T>, depth: u32) -> Vec3<T> {
-        let lights = self.scene.lights;
-        let mut sum = Vec3::splat(T::zero());
-        // One loop, so that the traversal is compiled once: the emitting faces come last.
-        for k in 0..=lights.len() {
-            let arrival = match lights.get(k) {
-                Some(Light::Rect(rect)) => {
-                    let u = self.random(depth, 1 + k);
-                    rect.sample(spot.point, [u[0], u[1]]).map(|sighting| Arrival {
-                        wi: sighting.wi,
-                        distance: sighting.distance,
-                        value: rect.radiance * (T::one() / sighting.pdf),
-                        pdf: sighting.pdf,
-                    })
-                }
-                Some(light) => light.beam(spot.point).map(|beam| Arrival {
-                    wi: beam.wi,
-                    distance: beam.distance,
-                    value: beam.irradiance,
-                    pdf: T::INFINITY,
-                }),
-                None if self.scene.emitters.is_empty() => None,
-                None => self.emitter(spot, self.random(depth, 1 + k)),
-            };
-            if let Some(arrival) = arrival {
-                sum = sum + self.reflected(s, spot, &arrival);
-            }
-        }
-        sum
-    }
-
-    /// Light from one emitting face.
-    #[inline(always)]
-    fn emitter(&self, spot: &Spot<T>, u: [T; 4]) -> Option<Arrival<T>> {
-        let scene = self.scene;
-        let face = scene.emitters.draw(u[0].to_f64());
-        let [a, b, c] = scene.corners(face);
-        let [v, w] = square_to_triangle([u[1], u[2]], Method::Fold);
-        let point = a * (T::one() - v - w) + b * v + c * w;
-        let emission = scene.emission[scene.material_ids[face] as usize];
-        let to = point - spot.point;
-        let wi = to.normalize();
-        let distance = to.dot(wi);
-        let cos_light = (b - a).cross(c - a).normalize().dot(wi).abs();
-        let per_area = T::of(brightness(emission) / scene.emitters.total());
-        let pdf = distance * (distance * per_area / cos_light);
-        // The ray ends before the emitter by as much as it starts above the surface, seen at the emitter's angle.
-        let end = distance - (scene.offset + scene.offset) / cos_light;
-        let value = Vec3::from(emission) * (T::one() / pdf);
-        let seen = pdf > T::zero() && pdf.is_finite() && end > T::zero();
-        seen.then_some(Arrival { wi, distance: end, value, pdf })
-    }
-
-    /// What the surface reflects of light that arrives, unless something is in between.
-    #[inline(always)]
-    fn reflected<S: Simd>(&self, s: S, spot: &Spot<T>, light: &Arrival<T>) -> Vec3<T> {
-        let none = Vec3::splat(T::zero());
-        let local = spot.frame.local(light.wi);
-        if !(local.z > T::zero() && light.wi.dot(spot.normal) > T::zero()) {
-            return none;
-        }
-        let f = spot.lobes.eval(local, spot.wo).times(light.value) * local.z;
-        let share =
-            if light.pdf.is_finite() { weight(light.pdf, spot.lobes.pdf(local, spot.wo)) } else { T::one() };
-        let ray = leave(spot.point, spot.normal, light.wi, self.scene.offset, light.distance);
-        if self.scene.bvh.any_hit(s, &ray) { none } else { f * share }
     }
 }
 
-/// Mean radiance of each pixel and the variance of that mean, row by row.
+/// Pictures that tiles write into.
+struct Sheets<'a, T> {
+    mean: Picture<'a, [T; 3]>,
+    variance: Picture<'a, [T; 3]>,
+    outliers: Option<Picture<'a, i32>>,
+    removed: Option<Picture<'a, [T; 3]>>,
+}
+
+impl<T: Real> Sheets<'_, T> {
+    /// # Safety
+    /// No other row in use may overlap this one.
+    unsafe fn put(&self, x: usize, y: usize, tallies: &[Tally]) {
+        let n = tallies.len();
+        // Sound: as the caller promises.
+        let (mean, variance) = unsafe { (self.mean.row(x, y, n), self.variance.row(x, y, n)) };
+        for (c, tally) in tallies.iter().enumerate() {
+            (mean[c], variance[c]) = (tally.mean.map(T::of), tally.variance().map(T::of));
+        }
+        if let Some(outliers) = &self.outliers {
+            // Sound: as above.
+            let row = unsafe { outliers.row(x, y, n) };
+            row.iter_mut().zip(tallies).for_each(|(o, t)| *o = t.outliers as i32);
+        }
+        if let Some(removed) = &self.removed {
+            // Sound: as above.
+            let row = unsafe { removed.row(x, y, n) };
+            row.iter_mut().zip(tallies).for_each(|(r, t)| *r = t.removed.map(T::of));
+        }
+    }
+}
+
+/// Whether a material is Lambert's diffuser, of the albedo with which its row begins.
+fn is_diffuse<T: Real>(kind: i32, row: &Row<T>) -> bool {
+    match Bsdf::of(kind, row) {
+        Some(Bsdf::Diffuse(_)) => true,
+        Some(Bsdf::MetallicRoughness(lobes)) => {
+            !lobes.is_specular() && lobes.diffuse.to_array() == [row[0], row[1], row[2]]
+        }
+        _ => false,
+    }
+}
+
+/// Mean radiance of each pixel of the picture, row by row, or of each in a list, and the variance of that mean.
 pub fn path_trace<T: Real>(
     watch: &mut dyn Watch,
     scene: &Surfaces<'_, T>,
-    camera: &Pinhole<T>,
+    camera: &Camera<T>,
+    filter: &Filter,
     options: Options,
-    mean: &mut [[T; 3]],
-    variance: &mut [[T; 3]],
+    pixels: Option<&[i32]>,
+    film: Film<'_, T>,
 ) -> Result<(), Interrupted> {
-    // About 10 ms of paths.
-    let piece = (8192 / options.samples.max(1) as usize).clamp(1, 256);
-    parallel::for_each(
-        watch,
-        (mean, variance),
-        piece,
-        |first, (mean, variance)| dispatch!(s => body(s, scene, camera, options, first, mean, variance)),
-    )
+    let lighting = Lighting::new(scene, options.selection);
+    let diffuse: Vec<bool> =
+        scene.kinds.iter().zip(scene.rows).map(|(&kind, row)| is_diffuse(kind, row)).collect();
+    let draws = Draws { sampler: options.sampler, seed: options.seed };
+    let count = film.mean.len();
+    let passes = options.samples.div_ceil(PASS);
+    let mut kept = vec![Tally::default(); if passes > 1 { count } else { 0 }];
+    let Tiles { width, height, .. } = Tiles::new(options.width, count, pixels, 1);
+    let sheets = Sheets {
+        mean: Picture::new(film.mean, width, height),
+        variance: Picture::new(film.variance, width, height),
+        outliers: film.outliers.map(|o| Picture::new(o, width, height)),
+        removed: film.removed.map(|r| Picture::new(r, width, height)),
+    };
+    for pass in 0..passes {
+        let done = pass * PASS;
+        let samples = PASS.min(options.samples - done);
+        let options = Options { start: options.start + done, samples, ..options };
+        let tracer = Tracer { scene, lighting: &lighting, diffuse: &diffuse, draws, options };
+        let tiles = Tiles::new(options.width, count, pixels, samples);
+        let kept = (passes > 1).then(|| Picture::new(&mut kept, width, height));
+        parallel::run(watch, tiles.count(), |i| {
+            let (first, side) = tiles.place(i);
+            let mut tallies = vec![Tally::default(); side[0] * side[1]];
+            dispatch!(s => tile(s, &tracer, camera, filter, &tiles, first, side, &mut tallies));
+            for (r, row) in tallies.chunks_mut(side[0]).enumerate() {
+                let (x, y) = (first[0], first[1] + r);
+                if let Some(kept) = &kept {
+                    // Sound: tiles do not overlap.
+                    let kept = unsafe { kept.row(x, y, side[0]) };
+                    for (kept, tally) in kept.iter_mut().zip(row.iter_mut()) {
+                        kept.merge(tally);
+                        *tally = *kept;
+                    }
+                }
+                // Sound: as above.
+                unsafe { sheets.put(x, y, row) };
+            }
+        })?;
+    }
+    Ok(())
 }
 
+/// All samples of the pixels of a tile, in waves.
 #[inline(always)]
-fn body<T: Real, S: Simd>(
+fn tile<T: Real, S: Simd>(
     s: S,
-    scene: &Surfaces<'_, T>,
-    camera: &Pinhole<T>,
-    options: Options,
-    first: usize,
-    mean: &mut [[T; 3]],
-    variance: &mut [[T; 3]],
+    tracer: &Tracer<'_, T>,
+    camera: &Camera<T>,
+    filter: &Filter,
+    tiles: &Tiles<'_>,
+    first: [usize; 2],
+    side: [usize; 2],
+    tallies: &mut [Tally],
 ) {
-    let random = Generator::new(options.seed);
-    for k in 0..mean.len() {
-        let pixel = first + k;
-        let (column, row) = (T::of((pixel % options.width) as f64), T::of((pixel / options.width) as f64));
-        let mut tally = Tally::default();
-        for sample in options.start..options.start + options.samples {
-            let path = Path { scene, random, pixel: pixel as u64, sample, max_depth: options.max_depth };
-            let u: [T; 4] = random.quad(path.pixel, sample, 0);
-            let direction = camera.direction(column + u[0], row + u[1]);
-            tally.add(path.trace(s, Ray::new(camera.eye.to_array(), direction.to_array())));
+    let options = tracer.options;
+    let mut wave = Wave::new();
+    let pixels = tallies.len();
+    // Samples of each pixel, pixels of each wave.
+    let each = (WAVE / pixels).clamp(1, options.samples as usize) as u32;
+    let group = (WAVE / each as usize).clamp(1, pixels);
+    let order = order(side);
+    for some in order.chunks(group) {
+        for start in (0..options.samples).step_by(each as usize) {
+            let count = each.min(options.samples - start);
+            wave.clear();
+            for &[x, y] in some {
+                let pixel = tiles.pixel(first[0] + x as usize, first[1] + y as usize);
+                let samples = options.start + start..options.start + start + count;
+                look(tracer, camera, filter, pixel, samples, &mut wave);
+            }
+            tracer.trace(s, &mut wave);
+            for (&[x, y], sums) in some.iter().zip(wave.sums.chunks(count as usize)) {
+                let tally = &mut tallies[y as usize * side[0] + x as usize];
+                sums.iter().for_each(|&sum| tally.add_clamped(sum, options.clamp));
+            }
         }
-        (mean[k], variance[k]) = (tally.mean.map(T::of), tally.variance().map(T::of));
     }
+}
+
+/// The camera's rays of a pixel.
+#[inline(always)]
+fn look<T: Real>(
+    tracer: &Tracer<'_, T>,
+    camera: &Camera<T>,
+    filter: &Filter,
+    pixel: usize,
+    samples: Range<u32>,
+    wave: &mut Wave<T>,
+) {
+    let (draws, width) = (&tracer.draws, tracer.options.width);
+    let key = draws.key(pixel as u32);
+    let half = T::of(0.5);
+    let (column, row) = (T::of((pixel % width) as f64) + half, T::of((pixel / width) as f64) + half);
+    for sample in samples {
+        let [x, y] = filter.warp(draws.pair::<T>(key, sample, purpose::PIXEL));
+        let lens = if camera.has_lens() { draws.pair(key, sample, purpose::LENS) } else { [half; 2] };
+        let time =
+            if camera.end.is_some() { draws.pair::<T>(key, sample, purpose::TIME)[0] } else { T::zero() };
+        wave.start(key, sample, camera.ray(column + x, row + y, lens, time));
+    }
+}
+
+/// The pixels of a tile, neighbours on both axes close together: squares of four by four.
+fn order([width, height]: [usize; 2]) -> Vec<[u16; 2]> {
+    let mut order = Vec::with_capacity(width * height);
+    for y in (0..height).step_by(4) {
+        for x in (0..width).step_by(4) {
+            for v in y..height.min(y + 4) {
+                order.extend((x..width.min(x + 4)).map(|u| [u as u16, v as u16]));
+            }
+        }
+    }
+    order
 }

@@ -2,9 +2,11 @@
 
 use super::Emitters;
 use crate::accel::{Bvh, Hit};
-use crate::brdf::metallic_roughness::{Lobes, Materials};
+use crate::brdf::Bsdf;
+use crate::brdf::Row;
+use crate::environment::panorama::Panorama;
 use crate::light::Light;
-use crate::real::Real;
+use crate::real::{Lanes, Real};
 use crate::transform::orthonormal_basis::Frame;
 use crate::vec::Vec3;
 
@@ -18,12 +20,16 @@ pub struct Surfaces<'a, T> {
     /// Colours of vertices, by which base colours are multiplied.
     pub colors: Option<&'a [[T; 3]]>,
     pub material_ids: &'a [i32],
-    pub materials: Materials<'a, T>,
+    /// Of each material: its kind of reflection model, and the model's parameters.
+    pub kinds: &'a [i32],
+    pub rows: &'a [Row<T>],
     /// Radiance that each material emits, from both sides.
     pub emission: &'a [[T; 3]],
     pub emitters: &'a Emitters,
     pub lights: &'a [Light<T>],
+    /// Radiance from where nothing is.
     pub background: Vec3<T>,
+    pub environment: Option<&'a Panorama<T>>,
     /// How far above a surface rays start.
     pub offset: T,
 }
@@ -34,12 +40,69 @@ pub struct Spot<T> {
     pub point: Vec3<T>,
     /// Unit, of the face, on the side that is seen.
     pub normal: Vec3<T>,
-    /// About the shading normal.
+    /// About the shading normal: on the side that is seen, or out of a body that light passes.
     pub frame: Frame<T>,
     /// Towards where it is seen from, in the frame.
     pub wo: Vec3<T>,
-    pub lobes: Lobes<T>,
-    pub emission: [T; 3],
+    pub bsdf: Bsdf<T>,
+}
+
+impl<T: Real> Spot<T> {
+    /// Whether a direction, in the frame and in the world, lies on one side by both normals.
+    #[inline(always)]
+    pub fn agrees(&self, local: Vec3<T>, world: Vec3<T>) -> bool {
+        let (zero, same) = (T::zero(), local.z * self.wo.z);
+        let seen = world.dot(self.normal);
+        (same > zero && seen > zero) || (same < zero && seen < zero)
+    }
+}
+
+/// A point of a face and its normals, one or lanes of them.
+#[derive(Clone, Copy)]
+pub struct Facing<V: Lanes> {
+    pub point: Vec3<V>,
+    /// Unit, of the face, on the side that is seen; NaN on a face without area.
+    pub normal: Vec3<V>,
+    /// Unit, interpolated, on the same side.
+    pub shading: Vec3<V>,
+    /// Where the face is seen from behind.
+    pub back: V::Mask,
+}
+
+/// `a` where the mask holds, `b` elsewhere.
+#[inline(always)]
+pub fn choose<V: Lanes>(mask: V::Mask, a: Vec3<V>, b: Vec3<V>) -> Vec3<V> {
+    a.zip(
+        b,
+        #[inline(always)]
+        |a, b| V::select(mask, a, b),
+    )
+}
+
+/// The value at barycentric coordinates, from those at the corners.
+#[inline(always)]
+pub fn between<V: Lanes>([a, b, c]: [Vec3<V>; 3], u: V, v: V) -> Vec3<V> {
+    a * (u.num(1.0) - u - v) + b * u + c * v
+}
+
+impl<V: Lanes> Facing<V> {
+    /// From the corners and their shading normals, met along a unit direction.
+    #[inline(always)]
+    pub fn of(corners: [Vec3<V>; 3], normals: Option<[Vec3<V>; 3]>, u: V, v: V, direction: Vec3<V>) -> Self {
+        let zero = u.num(0.0);
+        let [a, b, c] = corners;
+        let normal = (b - a).cross(c - a).normalize();
+        let back = zero.less(normal.dot(direction));
+        let normal = choose(back, -normal, normal);
+        let mut shading = normal;
+        if let Some(normals) = normals {
+            let n = between(normals, u, v).normalize();
+            let n = choose(n.dot(normal).less(zero), -n, n);
+            // Where interpolation turns the normal away from the eye (silhouettes), or gives none, the face's serves.
+            shading = choose(n.dot(direction).less(zero), n, normal);
+        }
+        Facing { point: between(corners, u, v), normal, shading, back }
+    }
 }
 
 impl<T: Real> Surfaces<'_, T> {
@@ -48,47 +111,33 @@ impl<T: Real> Surfaces<'_, T> {
         self.faces[face].map(|v| self.positions[v as usize].into())
     }
 
+    /// The unit normal of a face; NaN without area.
+    #[inline(always)]
+    pub fn face_normal(&self, face: usize) -> Vec3<T> {
+        let [a, b, c] = self.corners(face);
+        (b - a).cross(c - a).normalize()
+    }
+
     /// The attribute at a hit, from those of the face's vertices.
     #[inline(always)]
     fn interpolate(&self, of_vertices: &[[T; 3]], hit: &Hit<T>) -> Vec3<T> {
-        let [a, b, c] = self.faces[hit.face as usize].map(|v| Vec3::from(of_vertices[v as usize]));
-        a * (T::one() - hit.u - hit.v) + b * hit.u + c * hit.v
+        between(self.faces[hit.face as usize].map(|v| of_vertices[v as usize].into()), hit.u, hit.v)
     }
 
     /// The surface at a hit, met along the unit `direction`; None on a face without area.
     #[inline(always)]
     pub fn at(&self, hit: &Hit<T>, direction: Vec3<T>) -> Option<Spot<T>> {
         let face = hit.face as usize;
-        let [a, b, c] = self.corners(face);
-        let mut normal = (b - a).cross(c - a).normalize();
+        let normals = self.normals.map(|normals| self.faces[face].map(|v| Vec3::from(normals[v as usize])));
+        let Facing { point, normal, shading, back } =
+            Facing::of(self.corners(face), normals, hit.u, hit.v, direction);
         if normal.x.is_nan() {
             return None;
         }
-        if normal.dot(direction) > T::zero() {
-            normal = -normal;
-        }
-        let mut shading = normal;
-        if let Some(normals) = self.normals {
-            let n = self.interpolate(normals, hit).normalize();
-            let n = if n.dot(normal) < T::zero() { -n } else { n };
-            // Where interpolation turns the normal away from the eye (silhouettes), or gives none, the face's serves.
-            if n.dot(direction) < T::zero() {
-                shading = n;
-            }
-        }
         let row = self.material_ids[face] as usize;
-        let mut material = self.materials.at(row);
-        if let Some(colors) = self.colors {
-            material.base_color = material.base_color.times(self.interpolate(colors, hit));
-        }
-        let frame = Frame::about(shading);
-        Some(Spot {
-            point: self.interpolate(self.positions, hit),
-            normal,
-            frame,
-            wo: frame.local(-direction),
-            lobes: material.lobes(),
-            emission: self.emission[row],
-        })
+        let color = self.colors.map_or(Vec3::splat(T::one()), |colors| self.interpolate(colors, hit));
+        let bsdf = Bsdf::tinted(self.kinds[row], &self.rows[row], color)?;
+        let frame = Frame::about(if bsdf.transmits() && back { -shading } else { shading });
+        Some(Spot { point, normal, frame, wo: frame.local(-direction), bsdf })
     }
 }

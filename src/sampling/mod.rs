@@ -16,7 +16,7 @@ pub mod cosine_hemisphere;
 pub mod disk;
 pub mod generator;
 pub mod halton;
-mod hash;
+pub(crate) mod hash;
 pub mod hemisphere;
 mod joe_kuo;
 pub mod latin_hypercube;

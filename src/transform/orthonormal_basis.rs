@@ -2,7 +2,7 @@
 //!
 //! T. Duff and others, *Building an orthonormal basis, revisited*, 2017.
 
-use crate::real::Real;
+use crate::real::Lanes;
 use crate::vec::Vec3;
 
 #[derive(Clone, Copy, Debug)]
@@ -12,11 +12,11 @@ pub struct Frame<T> {
     pub z: Vec3<T>,
 }
 
-impl<T: Real> Frame<T> {
-    /// About a unit normal.
+impl<V: Lanes> Frame<V> {
+    /// About a unit normal, or lanes of them.
     #[inline(always)]
-    pub fn about(z: Vec3<T>) -> Self {
-        let one = T::one();
+    pub fn about(z: Vec3<V>) -> Self {
+        let one = z.x.num(1.0);
         let sign = one.copysign(z.z);
         let a = -one / (sign + z.z);
         let b = z.x * z.y * a;
@@ -27,11 +27,11 @@ impl<T: Real> Frame<T> {
         }
     }
     #[inline(always)]
-    pub fn local(&self, w: Vec3<T>) -> Vec3<T> {
+    pub fn local(&self, w: Vec3<V>) -> Vec3<V> {
         Vec3::new(self.x.dot(w), self.y.dot(w), self.z.dot(w))
     }
     #[inline(always)]
-    pub fn world(&self, w: Vec3<T>) -> Vec3<T> {
+    pub fn world(&self, w: Vec3<V>) -> Vec3<V> {
         self.x * w.x + self.y * w.y + self.z * w.z
     }
 }

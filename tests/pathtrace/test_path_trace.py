@@ -1,10 +1,13 @@
 """Path tracing: Mitsuba's pictures by z-scores, furnaces, and the same bits whatever the threads and the SIMD level."""
 
+from typing import get_args
+
 import numpy as np
 import pytest
 import shadelab as sl
 from shadelab import mesh, scene
 from shadelab.light import DirectionalLight, PointLight, RectLight
+from shadelab.pathtrace.paths import Sampler
 
 SIZE = (48, 32)
 TILE = 8
@@ -215,9 +218,26 @@ def test_runs_merge_and_variance_is_that_of_the_mean():
     assert np.allclose(merged.radiance, whole.radiance, rtol=1e-5, atol=1e-7)
     assert np.allclose(merged.variance, whole.variance, rtol=1e-4, atol=1e-9)
     # Against the spread of independent pictures.
-    runs = np.stack([sl.pathtrace.path_trace(world, (24, 16), 16, seed=s).radiance for s in range(32)])
-    stated = np.mean([sl.pathtrace.path_trace(world, (24, 16), 16, seed=s).variance.mean() for s in range(4)])
-    assert stated == pytest.approx(runs.var(0, ddof=1).mean(), rel=0.1)
+    several = [sl.pathtrace.path_trace(world, (24, 16), 16, seed=s, sampler="independent") for s in range(32)]
+    stated = np.mean([traced.variance.mean() for traced in several[:4]])
+    assert stated == pytest.approx(np.var([t.radiance for t in several], axis=0, ddof=1).mean(), rel=0.1)
+
+
+@pytest.mark.parametrize("sampler", get_args(Sampler))
+def test_samplers_agree_and_points_that_spread_err_less(sampler):
+    world = cornell()
+    reference = sl.pathtrace.path_trace(world, (24, 16), 4096, 3, seed=9, sampler="independent")
+    runs = np.stack([sl.pathtrace.path_trace(world, (24, 16), 64, 3, s, sampler=sampler).radiance for s in range(8)])
+    error = runs.astype(np.float64) - reference.radiance
+    independent = 64 * reference.variance.mean() * 64
+    spread = 64 * runs.var(0, ddof=1, dtype=np.float64).mean()
+    if sampler == "independent":
+        assert spread == pytest.approx(independent, rel=0.15)
+    elif sampler != "latin_hypercube":
+        assert spread < 0.5 * independent
+    # The mean of each pixel, whose error is mostly the reference's.
+    z = error.mean(0) / np.sqrt(runs.var(0, ddof=1) / 8 + reference.variance + 1e-12)
+    assert np.sqrt((z**2).mean()) < 1.3
 
 
 def test_stops_at_the_target_error():

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from typing import TYPE_CHECKING, Any, NamedTuple
+from typing import TYPE_CHECKING, Any, Literal, NamedTuple, TypeAlias, get_args
 
 import numpy as np
 from numpy.typing import DTypeLike, NDArray
@@ -12,12 +12,17 @@ from .. import _arrays, light
 from .._arrays import Floats
 from .._kernels import pathtrace as _kernels
 from ..accel import BVH
-from ._common import Estimate, Size, check_bvh, merge, picture_size, pinhole, surface_offset
+from ._common import Estimate, Size, check_bvh, lens_camera, merge, picture_size, surface_offset
+from .filters import PixelFilter, pixel_filter
 
 if TYPE_CHECKING:
     from ..scene import Scene
 
 __all__ = ["Traced", "path_trace"]
+
+Strategy: TypeAlias = Literal["uniform", "bsdf", "light", "mis"]
+Sampler: TypeAlias = Literal["sobol", "independent", "stratified", "latin_hypercube", "multi_jittered", "r2", "halton"]
+LightSelection: TypeAlias = Literal["auto", "all", "power", "tree"]
 
 
 class Traced(NamedTuple):
@@ -44,6 +49,11 @@ def path_trace(
     *,
     start: int = 0,
     target_error: float | None = None,
+    strategy: Strategy = "mis",
+    roulette: int = 1,
+    sampler: Sampler = "sobol",
+    light_selection: LightSelection = "auto",
+    filter: PixelFilter | str = "box",
     bvh: BVH | None = None,
     dtype: DTypeLike = np.float32,
     progress: bool | Callable[[int, int], object] | None = None,
@@ -66,6 +76,22 @@ def path_trace(
     target_error : float, optional
         Stops once the picture's standard error (root mean square over pixels and channels) is this fraction of its
         mean radiance, asked after 16, 32, 64 … samples.
+    strategy : {"mis", "light", "bsdf", "uniform"}
+        How light is looked for: by directions evenly over the hemisphere, by those of the material, by asking lights,
+        or by the material and the lights, weighed by the power heuristic. All agree in the mean. Beams (point and
+        directional lights) are asked in each, since no direction finds them; by "light", only mirrors and the sky are
+        left to directions.
+    roulette : int
+        Reflections before paths may end by chance, with the probability that they carry little; `max_depth` or more
+        for never.
+    sampler : {"sobol", "independent", "stratified", "latin_hypercube", "multi_jittered", "r2", "halton"}
+        Where random numbers come from; see `shadelab.sampling`. Those with a grid plan `start + samples` of them.
+    light_selection : {"auto", "all", "power", "tree"}
+        Which lights a surface asks: all, or one drawn by its power, or one by a tree of bounds of what each may bring
+        there. "auto" asks all at the first surface if they are at most four, and later one by its power; of more, or
+        of more than four emitting faces, one by the tree.
+    filter : PixelFilter or its name
+        Of the pixels: where samples lie.
     bvh : BVH, optional
         Of the flattened scene, in `dtype`: of the same vertices and faces; built if None.
     dtype : float32 or float64
@@ -85,8 +111,9 @@ def path_trace(
 
     Notes
     -----
-    Unbiased up to `max_depth`. Box-filtered pixels; every light is sampled at every reflection, so time grows with
-    their number. Rectangles are seen from the side that shines, stop what meets it, and are not there from behind;
+    Unbiased up to `max_depth`. Time is the same for every sample, whatever their number, and memory does not grow with
+    it. `variance` is that of independent samples: of scrambled points an upper bound as a rule, so two seeds tell more.
+    Rectangles are seen from the side that shines, stop what meets it, and are not there from behind;
     surfaces have two sides. (`shadelab.render` draws no lights.) The camera's `near` and `far` cut nothing off:
     paths start at the eye. No firefly is clamped: caustics from narrow mirrors converge slowly, and `variance` shows
     where. Fails to find light that only a mirror chain leads to (point lights seen in mirrors).
@@ -114,7 +141,13 @@ def path_trace(
     if precision not in (np.dtype(np.float32), np.dtype(np.float64)):
         raise TypeError(f"dtype: expected float32 or float64, got {precision}")
     call = _arrays.progress_callback(progress, "path trace")
-    trace = _tracer(scene, (width, height), max_depth, seed, bvh, precision)
+    names = (
+        _arrays.choice("strategy", strategy, get_args(Strategy)),
+        _arrays.choice("sampler", sampler, get_args(Sampler)),
+        _arrays.choice("light_selection", light_selection, get_args(LightSelection)),
+    )
+    depths = max_depth, _arrays.count("roulette", roulette, 0, 1 << 16)
+    trace = _tracer(scene, (width, height), depths, seed, names, pixel_filter(filter), bvh, precision)
     if target_error is None:
         return trace(start, samples, call)
     result = Traced(np.zeros((height, width, 3), precision), np.zeros((height, width, 3), precision), 0)
@@ -129,7 +162,14 @@ def path_trace(
 
 
 def _tracer(
-    scene: Scene, size: Size, max_depth: int, seed: int, bvh: BVH | None, dtype: np.dtype[Any]
+    scene: Scene,
+    size: Size,
+    depths: tuple[int, int],
+    seed: int,
+    names: tuple[str, str, str],
+    pixels: PixelFilter,
+    bvh: BVH | None,
+    dtype: np.dtype[Any],
 ) -> Callable[[int, int, Any], Traced]:
     """A function of (start, samples, progress) that renders the scene."""
     arrays = scene.flatten(dtype)
@@ -142,19 +182,20 @@ def _tracer(
             raise ValueError(f"bvh: expected one of the flattened scene in {dtype}")
     _arrays.warn_if_coarse(arrays.positions, dtype, 4)
     mesh = (arrays.positions, arrays.faces, arrays.normals, arrays.material_ids)
-    tables = (arrays.base_color, arrays.metallic, arrays.roughness, arrays.specular, arrays.emission)
+    tables = (arrays.kinds, arrays.rows, arrays.emission)
     flat = [np.require(a, requirements=["C", "A"]) for a in (*mesh, *tables)]
-    camera = pinhole(scene.camera, size)
-    surroundings = (tuple(float(c) for c in scene.background), surface_offset(arrays.positions))
+    view = lens_camera(scene.camera, size), pixels._kernel()
+    sky = None if scene.environment is None else scene.environment._panorama(dtype)
+    surroundings = (tuple(float(c) for c in scene.background), surface_offset(arrays.positions), sky)
     lights = light._table("lights", scene.lights)
     tree = bvh._tree
 
     def trace(start: int, samples: int, progress: Any) -> Traced:
         mean, variance = (np.empty((size[1], size[0], 3), dtype) for _ in range(2))
-        options = (size[0], samples, start, max_depth, seed)
-        out: tuple[NDArray[Any], ...] = (mean.reshape(-1, 3), variance.reshape(-1, 3))
+        options = ((size[0], samples, start, *depths, seed), names, np.inf)
+        out: tuple[NDArray[Any] | None, ...] = (mean.reshape(-1, 3), variance.reshape(-1, 3), None, None)
         _kernels.path_trace(
-            tree, flat[:4], arrays.colors, flat[4:], lights, surroundings, camera, options, out, progress
+            tree, flat[:4], arrays.colors, flat[4:], lights, surroundings, view, options, None, out, progress
         )
         return Traced(mean, variance, samples)
 

@@ -1,0 +1,358 @@
+//! Paths that are traced together: all their rays of a depth in one batch, then what they meet, then all shadow rays.
+//!
+//! The queues are kept from wave to wave, so that memory does not grow with samples. What a path collects depends on
+//! its own random numbers alone, and sums are added in the order of the queue: no bit depends on threads.
+//!
+//! S. Laine, T. Karras, T. Aila, *Megakernels considered harmful: wavefront path tracing on GPUs*, 2013.
+
+use super::draws::Draws;
+use super::lighting::{Lighting, weight};
+use super::path_trace::{Options, Strategy};
+use super::surface::Spot;
+use super::{Surfaces, leave};
+use crate::accel::{Hit, Ray};
+use crate::brdf::Draw;
+use crate::light::Light;
+use crate::math;
+use crate::real::{Lanes, Real};
+use crate::simd::Simd;
+use crate::vec::Vec3;
+
+/// Which pair of random numbers of a surface is for what.
+pub mod purpose {
+    /// Of the camera's: place in the pixel; place on the lens; time.
+    pub const PIXEL: u32 = 0;
+    pub const LENS: u32 = 1;
+    pub const TIME: u32 = 2;
+    /// The direction in which the path goes on.
+    pub const DIRECTION: u32 = 3;
+    /// Which lobe of the material, and whether the path ends.
+    pub const CHOICE: u32 = 4;
+    /// Which source of light, and which of its faces.
+    pub const SOURCE: u32 = 5;
+    /// The point of the light; one more for every further source.
+    pub const LIGHT: u32 = 6;
+    /// Pairs a depth, if no more than one source is asked.
+    pub const EACH: u32 = 4;
+}
+
+/// A path under way, beside its ray.
+#[derive(Clone, Copy, Debug)]
+pub struct Path<T> {
+    /// Which of the wave's.
+    pub slot: u32,
+    /// Value over density so far.
+    pub carried: Vec3<T>,
+    /// With which the ray's direction was drawn; infinite where nothing else finds what it meets.
+    pub pdf: T,
+    /// Undoes what interfaces did to radiance, which says nothing of the light to come.
+    pub scale: T,
+}
+
+/// The queues.
+pub struct Wave<T> {
+    pub rays: Vec<Ray<T>>,
+    pub paths: Vec<Path<T>>,
+    pub hits: Vec<Hit<T>>,
+    /// Those of the next depth.
+    pub next_rays: Vec<Ray<T>>,
+    pub next_paths: Vec<Path<T>>,
+    pub shadow_rays: Vec<Ray<T>>,
+    /// What each shadow ray carries if nothing is in its way, and to which slot.
+    pub carried: Vec<(Vec3<T>, u32)>,
+    blocked: Vec<bool>,
+    /// Paths that met diffusers, and those that met other materials.
+    diffuse: Vec<u32>,
+    other: Vec<u32>,
+    /// Of each slot: its key, its sample, the radiance so far.
+    pub keys: Vec<u32>,
+    pub samples: Vec<u32>,
+    pub sums: Vec<Vec3<T>>,
+}
+
+impl<T: Real> Wave<T> {
+    pub fn new() -> Self {
+        Wave {
+            rays: Vec::new(),
+            paths: Vec::new(),
+            hits: Vec::new(),
+            next_rays: Vec::new(),
+            next_paths: Vec::new(),
+            shadow_rays: Vec::new(),
+            carried: Vec::new(),
+            blocked: Vec::new(),
+            diffuse: Vec::new(),
+            other: Vec::new(),
+            keys: Vec::new(),
+            samples: Vec::new(),
+            sums: Vec::new(),
+        }
+    }
+
+    /// Makes room for new paths.
+    pub fn clear(&mut self) {
+        self.rays.clear();
+        self.paths.clear();
+        self.keys.clear();
+        self.samples.clear();
+        self.sums.clear();
+    }
+
+    /// Adds a path.
+    #[inline(always)]
+    pub fn start(&mut self, key: u32, sample: u32, ray: Ray<T>) {
+        let slot = self.sums.len() as u32;
+        let one = Vec3::splat(T::one());
+        self.rays.push(ray);
+        self.paths.push(Path { slot, carried: one, pdf: T::INFINITY, scale: T::one() });
+        self.keys.push(key);
+        self.samples.push(sample);
+        self.sums.push(Vec3::splat(T::zero()));
+    }
+}
+
+/// What all waves of a picture share.
+pub struct Tracer<'a, T> {
+    pub scene: &'a Surfaces<'a, T>,
+    pub lighting: &'a Lighting<T>,
+    /// Rows of materials that are perfect diffusers.
+    pub diffuse: &'a [bool],
+    pub draws: Draws,
+    pub options: Options,
+}
+
+impl<T: Real> Tracer<'_, T> {
+    /// Follows all paths of the wave to their ends.
+    #[inline(always)]
+    pub fn trace<S: Simd>(&self, s: S, wave: &mut Wave<T>) {
+        for depth in 0..=self.options.max_depth {
+            if wave.rays.is_empty() {
+                return;
+            }
+            wave.hits.resize(wave.rays.len(), Hit::miss());
+            self.scene.bvh.closest_hits(s, &wave.rays, &mut wave.hits);
+            self.collect(wave, depth);
+            if depth == self.options.max_depth {
+                return;
+            }
+            wave.next_rays.clear();
+            wave.next_paths.clear();
+            wave.shadow_rays.clear();
+            wave.carried.clear();
+            self.diffuse(s, wave, depth);
+            self.others(wave, depth);
+            self.shadows(s, wave);
+            std::mem::swap(&mut wave.rays, &mut wave.next_rays);
+            std::mem::swap(&mut wave.paths, &mut wave.next_paths);
+        }
+    }
+
+    /// The share of light that a direction of density `own` found, where the light's own draws have density `other`.
+    #[inline(always)]
+    fn found(&self, own: T, other: T) -> T {
+        match self.options.strategy {
+            Strategy::Mis => weight(own, other),
+            Strategy::Light if own.is_finite() => T::zero(),
+            _ => T::one(),
+        }
+    }
+
+    /// The emission that rays meet; sorts the surfaces that go on.
+    #[inline(always)]
+    fn collect(&self, wave: &mut Wave<T>, depth: u32) {
+        let scene = self.scene;
+        wave.diffuse.clear();
+        wave.other.clear();
+        let before = depth.saturating_sub(1);
+        for i in 0..wave.rays.len() {
+            let (ray, hit, path) = (&wave.rays[i], wave.hits[i], wave.paths[i]);
+            let (origin, direction) = (Vec3::from(ray.origin), Vec3::from(ray.direction));
+            let sum = &mut wave.sums[path.slot as usize];
+            if let Some((source, radiance, pdf)) = scene.light_before(origin, direction, hit.t) {
+                let share = self.found(path.pdf, pdf * self.lighting.chance(source, origin, before));
+                *sum = *sum + path.carried.times(radiance) * share;
+            } else if hit.is_hit() {
+                let row = scene.material_ids[hit.face as usize] as usize;
+                if let Some((radiance, other)) =
+                    scene.glow(self.lighting, hit.face as usize, ray, hit.t, before)
+                {
+                    *sum = *sum + path.carried.times(radiance) * self.found(path.pdf, other);
+                }
+                if self.diffuse[row] { wave.diffuse.push(i as u32) } else { wave.other.push(i as u32) }
+            } else if hit.t == T::INFINITY {
+                let arrives = self.from_beyond(origin, direction, path.pdf, before);
+                *sum = *sum + path.carried.times(arrives);
+            }
+        }
+    }
+
+    /// Radiance from where nothing is, weighed.
+    #[inline(always)]
+    fn from_beyond(&self, origin: Vec3<T>, direction: Vec3<T>, pdf: T, before: u32) -> Vec3<T> {
+        let mut sum = self.scene.background;
+        if let Some(sky) = self.scene.environment {
+            let (radiance, other) = sky.eval_and_pdf(direction);
+            let chance = self.lighting.chance(self.lighting.sky(), origin, before);
+            sum = sum + radiance * self.found(pdf, other * chance);
+        }
+        for (k, light) in self.scene.lights.iter().enumerate() {
+            if let Light::Ambient { radiance } = light {
+                let other = light.pdf(origin, direction) * self.lighting.chance(k, origin, before);
+                sum = sum + *radiance * self.found(pdf, other);
+            }
+        }
+        sum
+    }
+
+    /// Surfaces of all materials, one at a time.
+    #[inline(always)]
+    fn others(&self, wave: &mut Wave<T>, depth: u32) {
+        for q in 0..wave.other.len() {
+            let i = wave.other[q] as usize;
+            let (direction, path) = (Vec3::from(wave.rays[i].direction), wave.paths[i]);
+            let Some(spot) = self.scene.at(&wave.hits[i], direction) else { continue };
+            self.ask_lights(wave, &spot, path, depth);
+            self.go_on(wave, &spot, path, depth);
+        }
+    }
+
+    /// Which of the path's pairs is for a purpose at a depth.
+    #[inline(always)]
+    pub fn pair(&self, depth: u32, purpose: u32) -> u32 {
+        purpose + depth * (purpose::EACH + self.lighting.asked().saturating_sub(1))
+    }
+
+    /// Shadow rays to the lights.
+    #[inline(always)]
+    fn ask_lights(&self, wave: &mut Wave<T>, spot: &Spot<T>, path: Path<T>, depth: u32) {
+        let lighting = self.lighting;
+        if lighting.len() == 0 || spot.bsdf.is_smooth() {
+            return;
+        }
+        let (key, sample) = (wave.keys[path.slot as usize], wave.samples[path.slot as usize]);
+        let [choice, pick] = self.draws.pair::<T>(key, sample, self.pair(depth, purpose::SOURCE));
+        // Where rays to the side that is seen start.
+        let from = spot.point + spot.normal * self.scene.offset;
+        let (range, chance) = if lighting.asks_all(depth) {
+            (0..lighting.len(), T::one())
+        } else {
+            let Some((source, chance)) = lighting.draw(from, choice) else { return };
+            (source..source + 1, chance)
+        };
+        let first = range.start;
+        for source in range {
+            let purpose = purpose::LIGHT + (source - first) as u32;
+            let u = self.draws.pair(key, sample, self.pair(depth, purpose));
+            let Some(light) = self.scene.arrival(lighting, source, spot.point, pick, u) else { continue };
+            let beam = !light.pdf.is_finite();
+            if !beam && !self.options.strategy.asks_lights() {
+                continue;
+            }
+            let local = spot.frame.local(light.wi);
+            if !spot.agrees(local, light.wi) {
+                continue;
+            }
+            let share = if beam || self.options.strategy == Strategy::Light {
+                T::one()
+            } else {
+                weight(light.pdf * chance, self.direction_pdf(spot, local))
+            };
+            let f = spot.bsdf.eval(local, spot.wo).times(light.value) * (local.z.abs() * share / chance);
+            let value = path.carried.times(f);
+            if value != Vec3::splat(T::zero()) {
+                let ray = leave(spot.point, spot.normal, light.wi, self.scene.offset, light.distance);
+                wave.shadow_rays.push(ray);
+                wave.carried.push((value, path.slot));
+            }
+        }
+    }
+
+    /// The next direction.
+    #[inline(always)]
+    fn go_on(&self, wave: &mut Wave<T>, spot: &Spot<T>, path: Path<T>, depth: u32) {
+        let (zero, one) = (T::zero(), T::one());
+        let (key, sample) = (wave.keys[path.slot as usize], wave.samples[path.slot as usize]);
+        let u: [T; 2] = self.draws.pair(key, sample, self.pair(depth, purpose::DIRECTION));
+        let [lobe, fate] = self.draws.pair::<T>(key, sample, self.pair(depth, purpose::CHOICE));
+        let draw = if self.options.strategy == Strategy::Uniform && !spot.bsdf.is_smooth() {
+            let mut wi = uniform_hemisphere(u[0], u[1]);
+            if spot.bsdf.transmits() && lobe < T::of(0.5) {
+                wi = -wi;
+            }
+            let pdf = self.direction_pdf(spot, wi);
+            let weight = spot.bsdf.eval(wi, spot.wo) * (wi.z.abs() / pdf);
+            Some(Draw { wi, weight, pdf, specular: false, eta: one })
+        } else {
+            spot.bsdf.sample(spot.wo, [u[0], u[1], lobe])
+        };
+        let Some(draw) = draw else { return };
+        let out = spot.frame.world(draw.wi);
+        if !(draw.pdf > zero && spot.agrees(draw.wi, out)) {
+            return;
+        }
+        let (carried, scale) = (path.carried.times(draw.weight), path.scale * draw.eta * draw.eta);
+        let survival = self.survival(carried * scale, depth);
+        if !(fate < survival) {
+            return;
+        }
+        let carried = carried * (one / survival);
+        let pdf = if draw.specular { T::INFINITY } else { draw.pdf };
+        wave.next_rays.push(leave(spot.point, spot.normal, out, self.scene.offset, T::INFINITY));
+        wave.next_paths.push(Path { carried, pdf, scale, ..path });
+    }
+
+    /// The density with which the strategy draws a direction.
+    #[inline(always)]
+    fn direction_pdf(&self, spot: &Spot<T>, wi: Vec3<T>) -> T {
+        if self.options.strategy != Strategy::Uniform {
+            spot.bsdf.pdf(wi, spot.wo)
+        } else {
+            T::one() / (T::of(if spot.bsdf.transmits() { 4.0 } else { 2.0 }) * T::PI)
+        }
+    }
+
+    /// The chance with which a path goes on.
+    #[inline(always)]
+    pub fn survival<V: Lanes<Elem = T>>(&self, carried: Vec3<V>, depth: u32) -> V {
+        let largest = carried.x.max(carried.y).max(carried.z);
+        let (zero, one) = (largest.num(0.0), largest.num(1.0));
+        if depth < self.options.roulette {
+            // What carries nothing ends.
+            V::select(zero.less(largest), one, zero)
+        } else {
+            largest.min(one)
+        }
+    }
+
+    /// Adds what shadow rays carry where nothing is in their way.
+    #[inline(always)]
+    fn shadows<S: Simd>(&self, s: S, wave: &mut Wave<T>) {
+        if wave.shadow_rays.is_empty() {
+            return;
+        }
+        wave.blocked.resize(wave.shadow_rays.len(), false);
+        self.scene.bvh.any_hits(s, &wave.shadow_rays, &mut wave.blocked);
+        for (i, &(value, slot)) in wave.carried.iter().enumerate() {
+            if !wave.blocked[i] {
+                let sum = &mut wave.sums[slot as usize];
+                *sum = *sum + value;
+            }
+        }
+    }
+
+    /// The queue of diffusers; see [`super::diffuse`].
+    #[inline(always)]
+    fn diffuse<S: Simd>(&self, s: S, wave: &mut Wave<T>, depth: u32) {
+        let queue = std::mem::take(&mut wave.diffuse);
+        super::diffuse::shade(s, self, wave, &queue, depth);
+        wave.diffuse = queue;
+    }
+}
+
+/// A direction about z, evenly over the hemisphere.
+#[inline(always)]
+pub fn uniform_hemisphere<V: Lanes>(u: V, v: V) -> Vec3<V> {
+    let r = ((u.num(1.0) - u) * (u.num(1.0) + u)).sqrt();
+    let (sin, cos) = math::sin_cos(v.num(2.0 * std::f64::consts::PI) * v);
+    Vec3::new(r * cos, r * sin, u)
+}
