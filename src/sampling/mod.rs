@@ -8,6 +8,7 @@
 //!   [`spherical_rectangle`]: the unit square warped onto each, with inverses and densities
 //! - [`area_to_solid_angle`]: a density of another measure
 //! - [`tabulated`], [`alias_table`]: points and indices in proportion to given weights
+//! - [`metropolis_hastings`], [`gibbs`]: Markov chains over pictures
 
 pub mod alias_table;
 pub mod area_to_solid_angle;
@@ -15,11 +16,13 @@ pub mod cone;
 pub mod cosine_hemisphere;
 pub mod disk;
 pub mod generator;
+pub mod gibbs;
 pub mod halton;
 pub(crate) mod hash;
 pub mod hemisphere;
 mod joe_kuo;
 pub mod latin_hypercube;
+pub mod metropolis_hastings;
 pub mod multi_jittered;
 mod primes;
 pub mod r2;

@@ -306,6 +306,11 @@ impl<T: Real> Tabulated2D<T> {
         let x = self.row(y.cell as usize).sample(u[0]);
         Drawn2 { point: [x.x, y.x], pdf: x.pdf * y.pdf, cell: [x.cell, y.cell] }
     }
+    /// A point of the row at height `y` in [0, 1], by the density within it.
+    #[inline(always)]
+    pub fn sample_within(&self, y: T, u: T) -> Drawn<T> {
+        self.row(self.rows.table().cell(y)).sample(u)
+    }
     /// The density at a point; zero outside the square.
     #[inline(always)]
     pub fn pdf(&self, [x, y]: [T; 2]) -> T {

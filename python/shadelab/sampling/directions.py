@@ -67,9 +67,9 @@ def square_to_sphere(u: ArrayLike) -> Floats:
 
     Examples
     --------
-    >>> square_to_sphere([[0.0, 0.0], [0.5, 0.25]])
+    >>> square_to_sphere([[0.0, 0.0], [0.5, 0.0]])
     array([[0., 0., 1.],
-           [0., 1., 0.]])
+           [1., 0., 0.]])
     """
     return _arrays.elementwise(_kernels.square_to_sphere, {"u": (u, 2)}, [3])[0]
 
@@ -162,9 +162,9 @@ def square_to_cone(u: ArrayLike, angle: ArrayLike, method: DiskMethod = "concent
 
     Examples
     --------
-    >>> square_to_cone([[0.5, 0.5], [1.0, 0.5]], np.pi / 2).round(15) + 0.0
-    array([[0., 0., 1.],
-           [1., 0., 0.]])
+    >>> square_to_cone([[0.5, 0.5], [0.75, 0.5]], 0.02).round(6)
+    array([[0.      , 0.      , 1.      ],
+           [0.01    , 0.      , 0.99995 ]])
     """
     _arrays.choice("method", method, ("concentric", "polar"))
     return _arrays.elementwise(_kernels.square_to_cone, {"u": (u, 2)}, [3], method, knobs={"angle": angle})[0]
@@ -234,7 +234,7 @@ def square_to_cone_pdf(directions: ArrayLike, angle: ArrayLike) -> Floats:
     Examples
     --------
     >>> square_to_cone_pdf([[0.0, 0.0, 1.0], [1.0, 0.0, 0.0]], 0.5)
-    array([1.30010795, 0.        ])
+    array([1.30010026, 0.        ])
     """
     given = {"directions": (directions, 3)}
     return _arrays.elementwise(_kernels.square_to_cone_pdf, given, [0], knobs={"angle": angle})[0]
@@ -296,7 +296,7 @@ def square_to_spherical_triangle(
     (array([1., 0., 0.]), array(1.57079633))
     """
     given = {"u": (u, 2), "a": (a, 3), "b": (b, 3), "c": (c, 3)}
-    return _towards(_kernels.square_to_spherical_triangle, given, full_output)  # type: ignore[no-any-return]
+    return _towards(_kernels.square_to_spherical_triangle, given, full_output)
 
 
 def spherical_triangle_to_square(directions: ArrayLike, a: ArrayLike, b: ArrayLike, c: ArrayLike) -> Floats:
@@ -417,7 +417,7 @@ def square_to_spherical_rectangle(
     (array([0., 0., 1.]), array(2.0943951))
     """
     given = {"u": (u, 2), "center": (center, 3), "edge_u": (edge_u, 3), "edge_v": (edge_v, 3)}
-    return _towards(_kernels.square_to_spherical_rectangle, given, full_output)  # type: ignore[no-any-return]
+    return _towards(_kernels.square_to_spherical_rectangle, given, full_output)
 
 
 def spherical_rectangle_to_square(

@@ -2,6 +2,7 @@
 
 mod directions;
 mod generators;
+mod markov;
 mod sequences;
 mod tabulated;
 mod warps;
@@ -23,6 +24,8 @@ pub mod sampling {
     use super::sequences::{halton, latin_hypercube, multi_jittered, r2, sobol, stratified};
     #[pymodule_export]
     const SEQUENCE_DIMENSIONS: usize = super::sequences::SEQUENCE_DIMENSIONS;
+    #[pymodule_export]
+    use super::markov::{gibbs, metropolis_hastings};
     #[pymodule_export]
     use super::tabulated::{Table1D, Table2D, alias_table, sample_alias};
     #[pymodule_export]
