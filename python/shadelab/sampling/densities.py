@@ -148,8 +148,8 @@ def inverse_transform(
     Notes
     -----
     In double. With a `cdf`: bisection, to the last digits that the `cdf` itself tells. With a `pdf`:
-    Gauss-Legendre quadrature of 16 nodes in each of 512 panels, so a density smooth within panels is right to 1e-12, and
-    one that jumps to a panel's share of the jump.
+    Gauss-Legendre quadrature of 16 nodes in each of 512 panels, so a density smooth within panels is right to 1e-12,
+    and one that jumps to a panel's share of the jump.
 
     References
     ----------
