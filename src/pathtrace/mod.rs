@@ -6,12 +6,15 @@
 //! - [`film`]: what is kept of a pixel's samples
 //! - [`ray_cast`]: what each pixel's centre sees
 //! - [`direct_light`]: light from the lights, once reflected, with shadows, at given points
+//! - [`whitted`]: mirrors, glass and hard shadows by recursion
+//! - [`distribution`]: with gloss, penumbrae, lens and time
 //! - [`path_trace`]: all light paths
 
 pub mod aov;
 pub mod camera;
 mod diffuse;
 pub mod direct_light;
+pub mod distribution;
 mod draws;
 mod emitters;
 pub(crate) mod film;
@@ -19,15 +22,17 @@ pub mod filter;
 mod lighting;
 pub mod path_trace;
 pub mod ray_cast;
+pub(crate) mod recursion;
 mod surface;
 mod wave;
+pub mod whitted;
 
 use crate::accel::Ray;
 use crate::real::Real;
 use crate::vec::Vec3;
 pub use emitters::Emitters;
 use film::Tally;
-pub use lighting::Selection;
+pub use lighting::{Lighting, Selection};
 pub use surface::Surfaces;
 
 /// A pinhole: pixel coordinates (x, y) look along `corner + x · right + y · down`.

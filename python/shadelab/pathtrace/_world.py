@@ -64,8 +64,8 @@ class World:
         """Samples `start` … `start + samples` by the moments at which they see the scene.
 
         A still scene has one, and each ray has a time of its own. Where things move, moments are a van der Corput
-        sequence over the time that the shutter is open, shifted by chance: any run of them is spread evenly, and each
-        by itself is even over the time, so that means are unbiased.
+        sequence over the time that the shutter is open, shifted by chance (anew where more samples share a moment):
+        any run of them is spread evenly, and each by itself is even over the time, so that means are unbiased.
         """
         opened, closed = self.scene.camera.shutter
         if samples == 0 or not self.scene.moves:
@@ -76,7 +76,7 @@ class World:
             yield Moment(start, samples, arrays, bvh, None)
             return
         each = -(-samples // _MOMENTS)
-        shift = float(np.random.Generator(np.random.Philox(key=seed)).random())
+        shift = float(np.random.Generator(np.random.Philox(key=[seed, each])).random())
         for first in range(start, start + samples, each):
             time = opened + (closed - opened) * ((_reversed_digits(first // each) + shift) % 1.0)
             arrays, bvh = self.at(time)

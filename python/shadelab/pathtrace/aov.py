@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 import numpy as np
 from numpy.typing import DTypeLike, NDArray
 
-from .. import _arrays
+from .. import _arrays, brdf
 from .._arrays import Floats
 from .._kernels import pathtrace as _kernels
 from ..accel import BVH
@@ -26,7 +26,7 @@ class AOVs(NamedTuple):
     """Pictures of what is seen, (H, W) or (H, W, n); zeros and −1 where nothing is."""
 
     albedo: Floats
-    """(H, W, 3) base colour, linear."""
+    """(H, W, 3) base colour, linear; one for glass."""
     normal: Floats
     """(H, W, 3) shading normal in the world, as the mesh has it; a mean of several is shorter than one."""
     depth: Floats
@@ -108,6 +108,9 @@ def aovs(
     world = World(scene, bvh, precision(dtype))
     call = _arrays.progress_callback(progress, "aovs")
     moved = world.at(1.0)[0].positions if scene.moves else None
+    # What passes through glass keeps its colour.
+    clear = [isinstance(m, brdf.Dielectric | brdf.RoughDielectric) for m in world.arrays.materials]
+    albedo = np.where(np.array(clear)[:, None], world.dtype.type(1), world.arrays.base_color)
 
     def look(moment: Moment) -> AOVs:
         a = moment.arrays
@@ -117,7 +120,7 @@ def aovs(
         mesh = [np.require(x, requirements=["C", "A"]) for x in (a.positions, a.faces, a.normals)]
         _kernels.aovs(
             moment.bvh._tree,
-            [*mesh, a.material_ids, a.instance_ids, a.base_color],
+            [*mesh, a.material_ids, a.instance_ids, albedo],
             [a.colors, moved],
             lens_camera(scene.camera, size, moment.shutter),
             kernel_filter,

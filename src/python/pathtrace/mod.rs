@@ -5,6 +5,7 @@ pub(super) mod camera;
 mod casting;
 mod direct;
 mod paths;
+mod recursion;
 
 use crate::pathtrace::Pinhole;
 use crate::real::Real;
@@ -33,4 +34,6 @@ pub mod pathtrace {
     use super::direct::direct_light;
     #[pymodule_export]
     use super::paths::path_trace;
+    #[pymodule_export]
+    use super::recursion::recursion;
 }
