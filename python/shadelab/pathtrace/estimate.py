@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterable, Iterator
 from typing import Any, NamedTuple, TypeAlias
 
 import numpy as np
@@ -15,7 +15,7 @@ __all__: list[str] = []
 # Pixels of a square that stop together.
 _TILE = 8
 # Samples of each pixel before any may stop.
-_PILOT = 32
+PILOT = 32
 # Pixels darker than this part of the picture's mean are held to the error of one that bright.
 _DARK = 0.05
 
@@ -69,8 +69,8 @@ class Traced(NamedTuple):
         return film.picture()
 
 
-Round: TypeAlias = Callable[[int, int, NDArray[np.int32] | None], Traced]
-"""(start, samples, pixels): those samples of the picture, or of the pixels listed, as a picture of one row."""
+Round: TypeAlias = Callable[[int, int, NDArray[np.int32] | None], Iterable[Traced]]
+"""(start, samples, pixels): those samples of the picture, or of the pixels listed as a picture of one row, in parts."""
 
 
 class Film:
@@ -142,15 +142,11 @@ def rounds(trace: Round, film: Film, start: int, samples: int, first: int, targe
     pixels = None
     while done < samples:
         count = min(max(first, done), samples - done)
-        film.add(trace(start + done, count, pixels), pixels)
+        for part in trace(start + done, count, pixels):
+            film.add(part, pixels)
         done += count
         yield film.picture()
-        if target is not None and done >= _PILOT:
+        if target is not None and done >= PILOT:
             pixels = film.unsettled(target)
             if not pixels.size:
                 return
-
-
-def pilot(samples: int) -> int:
-    """The samples of the first round where pixels may stop."""
-    return min(_PILOT, samples)

@@ -5,6 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from ... import brdf, light, mesh, pathtrace, scene, transform
+from ..._arrays import Floats
 from ..stability import Measurement, extreme
 
 
@@ -56,7 +57,7 @@ def _borders(dtype: np.dtype) -> Measurement:
     wrong, cases, strays = 0, 0, 0
     for name in ("box", "tent", "gaussian", "blackman_harris"):
         for radius in (0.0, 1e-30, 1e-6, 1.0, 1e6):
-            x = pathtrace.PixelFilter(name, radius).sample(u)  # type: ignore[arg-type]
+            x = pathtrace.PixelFilter(name, radius).sample(u)
             wrong += int((np.abs(x) > t(radius)).sum() + (np.diff(x) < 0).sum() + (x[0] != -x[-1]))
             cases, strays = cases + x.size, strays + _strays(x)
     return Measurement(wrong, cases, strays)
@@ -64,7 +65,10 @@ def _borders(dtype: np.dtype) -> Measurement:
 
 def _still(scale: float) -> scene.Scene:
     """A matt box and a glass ball on a mirror under a point light."""
-    move = lambda *at: transform.translate(np.multiply(at, scale))  # noqa: E731
+
+    def move(x: float, y: float, z: float) -> Floats:
+        return transform.translate([x * scale, y * scale, z * scale])
+
     things = [
         scene.Instance(mesh.plane((6 * scale, 6 * scale)), move(0, -0.5, 0), scene.Material((0.9, 0.8, 0.7), 1, 0)),
         scene.Instance(mesh.box((scale,) * 3), move(-0.7, 0, 0), scene.Material((0.5, 0.6, 0.7), specular=0)),
