@@ -79,18 +79,22 @@ pub fn pool() -> Arc<ThreadPool> {
 
 /// Runs `task(0) … task(tasks - 1)` on the pool, each once. Results must not depend on which thread takes a task.
 pub fn run(watch: &mut dyn Watch, tasks: usize, task: impl Fn(usize) + Sync) -> Result<(), Interrupted> {
+    // One piece is not worth waking a thread for.
+    let here = tasks <= 1;
     // Through a pointer: the pool's code is compiled once, and each kernel in its own chapter's unit.
-    run_tasks(watch, tasks, &task)
+    run_tasks(watch, tasks, here, &|i, _| task(i))
 }
 
-fn run_tasks(watch: &mut dyn Watch, tasks: usize, task: &(dyn Fn(usize) + Sync)) -> Result<(), Interrupted> {
-    // One piece is not worth waking a thread for; and on a thread of the pool, waiting for the others could
-    // wait for itself.
-    if tasks <= 1 || rayon::current_thread_index().is_some() {
-        (0..tasks).for_each(task);
+/// A task, and the flag that tells it to stop.
+type Task<'a> = &'a (dyn Fn(usize, &AtomicBool) + Sync);
+
+fn run_tasks(watch: &mut dyn Watch, tasks: usize, here: bool, task: Task) -> Result<(), Interrupted> {
+    let (next, done, stop) = (AtomicUsize::new(0), AtomicUsize::new(0), AtomicBool::new(false));
+    // On a thread of the pool, waiting for the others could wait for itself.
+    if here || rayon::current_thread_index().is_some() {
+        (0..tasks).for_each(|i| task(i, &stop));
         return finish(watch.tick(tasks, tasks));
     }
-    let (next, done, stop) = (AtomicUsize::new(0), AtomicUsize::new(0), AtomicBool::new(false));
     let left = Mutex::new(0usize);
     let finished = Condvar::new();
     let pool = pool();
@@ -107,7 +111,7 @@ fn run_tasks(watch: &mut dyn Watch, tasks: usize, task: &(dyn Fn(usize) + Sync))
                     if i >= tasks {
                         break;
                     }
-                    task(i);
+                    task(i, &stop);
                     done.fetch_add(1, Ordering::Relaxed);
                 }
             });
@@ -275,6 +279,32 @@ pub fn for_each<P: Pieces>(
     size: usize,
     f: impl Fn(usize, P) + Sync,
 ) -> Result<(), Interrupted> {
+    let f: &(dyn Fn(usize, P) + Sync) = &f;
+    // One piece is not worth waking a thread for.
+    let here = data.items() <= size;
+    for_each_piece(watch, data, size, here, &|i, piece, _| f(i, piece))
+}
+
+/// [`for_each`] over pieces of which one may take long: the flag tells it to return soon. `long` wakes a thread even for a
+/// single piece, so that the caller can watch it.
+pub fn for_each_stoppable<P: Pieces>(
+    watch: &mut dyn Watch,
+    data: P,
+    size: usize,
+    long: bool,
+    f: impl Fn(usize, P, &AtomicBool) + Sync,
+) -> Result<(), Interrupted> {
+    let here = !long && data.items() <= size;
+    for_each_piece(watch, data, size, here, &f)
+}
+
+fn for_each_piece<P: Pieces>(
+    watch: &mut dyn Watch,
+    data: P,
+    size: usize,
+    here: bool,
+    f: &(dyn Fn(usize, P, &AtomicBool) + Sync),
+) -> Result<(), Interrupted> {
     let (n, size) = (data.items(), size.max(1));
     let mut pieces = Vec::with_capacity(n.div_ceil(size));
     let (mut rest, mut left) = (data, n);
@@ -286,10 +316,9 @@ pub fn for_each<P: Pieces>(
     if left > 0 {
         pieces.push(Mutex::new(Some(rest.cut(left).0)));
     }
-    let f: &(dyn Fn(usize, P) + Sync) = &f;
-    run(watch, pieces.len(), |i| {
+    run_tasks(watch, pieces.len(), here, &|i, stop| {
         let piece = pieces[i].lock().unwrap_or_else(PoisonError::into_inner).take();
-        f(i * size, piece.expect("each piece is claimed once"));
+        f(i * size, piece.expect("each piece is claimed once"), stop);
     })
 }
 

@@ -858,7 +858,7 @@ def ray_traced(
     shape, flat = _arrays.broadcast(named)
     faces = None
     if ignore_face is not None:
-        ids = accel._rays._ignored_faces(ignore_face, len(bvh._faces))
+        ids = accel._rays.ignored("ignore_face", ignore_face, "a face", len(bvh._faces))
         try:
             faces = np.ascontiguousarray(np.broadcast_to(ids, shape), np.int32).reshape(-1)
         except ValueError:

@@ -12,6 +12,8 @@ mod bounds;
 mod nearest;
 mod cells;
 mod halving;
+#[cfg_attr(not(feature = "python"), allow(dead_code))] // as those of `query`
+pub(crate) mod lists;
 #[cfg_attr(not(feature = "python"), allow(dead_code))] // points come from Python alone
 pub(crate) mod pseudonormals;
 mod ray;

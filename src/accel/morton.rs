@@ -11,6 +11,30 @@ pub fn encode([x, y, z]: [u64; 3]) -> u64 {
     spread(x) | spread(y) << 1 | spread(z) << 2
 }
 
+/// The cell of a point in a box whose sides are `side` cells long: along each axis the place between `lower` and `upper`,
+/// halved so that no extent overflows. An axis without extent has one cell.
+#[inline(always)]
+pub fn cell(p: [f64; 3], lower: [f64; 3], half: [f64; 3], side: u64) -> [u64; 3] {
+    let last = (side - 1) as f64;
+    let mut cell = [0; 3];
+    for k in 0..3 {
+        let place = if half[k] > 0.0 { (p[k] * 0.5 - lower[k] * 0.5) / half[k] } else { 0.0 };
+        // Through 32 bits, which lanes can convert to.
+        cell[k] = (place * side as f64).min(last) as u32 as u64;
+    }
+    cell
+}
+
+/// Whether a point is finite and in the box.
+#[inline(always)]
+pub fn within(p: [f64; 3], lower: [f64; 3], upper: [f64; 3]) -> bool {
+    let mut inside = true;
+    for k in 0..3 {
+        inside &= (lower[k] <= p[k]) & (p[k] <= upper[k]);
+    }
+    inside
+}
+
 /// The cell of a code.
 #[inline(always)]
 pub fn decode(code: u64) -> [u64; 3] {

@@ -1,12 +1,12 @@
 //! Arrays of rays in, arrays of hits out: cut into pieces for the threads.
 
+use super::lists::{Lists, OutOfMemory, lists, zeros};
 use super::structure::{Counted, Ordered, Stats, Structure, Uncounted};
 use super::{Hit, Ray};
 use crate::dispatch;
 use crate::parallel::{self, Interrupted, Pieces, Watch};
 use crate::real::Real;
 use crate::vec::Vec3;
-use std::sync::{Mutex, PoisonError};
 
 /// Rays in arrays; intervals and ignored faces are one for all, or one a ray.
 #[derive(Clone, Copy)]
@@ -27,7 +27,7 @@ const BAND: usize = 4;
 const NARROW: usize = 32;
 
 /// Rays a task, where every hit is asked for.
-const ALL_HITS: usize = 64;
+pub const ALL_HITS: usize = 64;
 
 /// The order in which rays of a stretch are traced.
 #[derive(Clone, Copy)]
@@ -83,7 +83,7 @@ impl<T: Real> Rays<'_, T> {
 }
 
 #[inline(always)]
-fn one_or_each<X: Copy>(list: &[X], i: usize) -> X {
+pub fn one_or_each<X: Copy>(list: &[X], i: usize) -> X {
     if list.len() == 1 { list[0] } else { list[i] }
 }
 
@@ -131,6 +131,16 @@ pub struct AllHits<T> {
     pub v: Vec<T>,
 }
 
+impl<T: Real> AllHits<T> {
+    /// Places for `n` hits, if there is memory for them.
+    pub fn zeros(n: usize) -> Result<Self, OutOfMemory> {
+        Ok(AllHits { offsets: Vec::new(), t: zeros(n)?, face: zeros(n)?, u: zeros(n)?, v: zeros(n)? })
+    }
+    pub fn places(&mut self) -> Found<'_, T> {
+        Found { t: &mut self.t, face: &mut self.face, u: &mut self.u, v: &mut self.v }
+    }
+}
+
 /// What [`Queries::counts`] follows.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Query {
@@ -152,7 +162,7 @@ pub trait Queries<T: Real>: Send + Sync {
         watch: &mut dyn Watch,
         rays: &Rays<T>,
         count: usize,
-    ) -> Result<AllHits<T>, Interrupted>;
+    ) -> Result<Result<AllHits<T>, OutOfMemory>, Interrupted>;
     /// Boxes and triangles that each ray tests, one ray at a time.
     fn counts(
         &self,
@@ -208,25 +218,16 @@ impl<T: Real, A: Structure<T>> Queries<T> for A {
         watch: &mut dyn Watch,
         rays: &Rays<T>,
         count: usize,
-    ) -> Result<AllHits<T>, Interrupted> {
-        // Few, since a ray may have as many hits as there are faces.
-        let piece = ALL_HITS.min(count.max(1));
-        let pieces: Vec<Mutex<Vec<Hit<T>>>> = (0..count.div_ceil(piece)).map(|_| Mutex::default()).collect();
-        // The number of each ray's hits, in the place of its end.
-        let mut offsets = vec![0i64; count + 1];
-        parallel::for_each(watch, &mut offsets[1..], piece, |first, ends: &mut [i64]| {
-            let mut found = Vec::new();
-            dispatch!(s => for (i, end) in ends.iter_mut().enumerate() {
-                let before = found.len();
-                Structure::all_hits(self, s, &rays.get(first + i), &mut Uncounted, &mut found);
-                *end = (found.len() - before) as i64;
-            });
-            *pieces[first / piece].lock().unwrap_or_else(PoisonError::into_inner) = found;
-        })?;
-        for i in 0..count {
-            offsets[i + 1] += offsets[i];
-        }
-        gather(watch, offsets, pieces)
+    ) -> Result<Result<AllHits<T>, OutOfMemory>, Interrupted> {
+        // Few a task, since a ray may have as many hits as there are faces.
+        let all = lists(
+            watch,
+            count,
+            ALL_HITS,
+            false,
+            |i, found, _| dispatch!(s => Structure::all_hits(self, s, &rays.get(i), &mut Uncounted, found)),
+        )?;
+        all.map_or_else(|full| Ok(Err(full)), |all| gather(watch, all))
     }
 
     fn counts(
@@ -248,7 +249,8 @@ impl<T: Real, A: Structure<T>> Queries<T> for A {
                         Query::ClosestHit => drop(Structure::closest_hit(self, s, &ray, &mut counted)),
                         Query::AnyHit => drop(Structure::any_hit(self, s, &ray, &mut counted)),
                         Query::AllHits => {
-                            Structure::all_hits(self, s, &ray, &mut counted, &mut found);
+                            // Without memory for one ray's hits the count is of those before.
+                            let _ = Structure::all_hits(self, s, &ray, &mut counted, &mut found);
                             found.clear();
                         }
                     }
@@ -267,31 +269,14 @@ impl<T: Real, A: Structure<T>> Queries<T> for A {
     }
 }
 
-/// Brings the hits of all pieces into arrays, and frees each piece as it goes.
+/// Brings the hits of all rays into arrays.
 fn gather<T: Real>(
     watch: &mut dyn Watch,
-    offsets: Vec<i64>,
-    pieces: Vec<Mutex<Vec<Hit<T>>>>,
-) -> Result<AllHits<T>, Interrupted> {
-    let total = offsets.last().map_or(0, |&n| n as usize);
-    let (mut t, mut u, mut v) = (vec![T::zero(); total], vec![T::zero(); total], vec![T::zero(); total]);
-    let mut face = vec![0i32; total];
-    let mut rest = Found { t: &mut t, face: &mut face, u: &mut u, v: &mut v };
-    let mut tasks = Vec::with_capacity(pieces.len());
-    for piece in pieces {
-        let piece = piece.into_inner().unwrap_or_else(PoisonError::into_inner);
-        let (place, tail) = rest.cut(piece.len());
-        tasks.push(Mutex::new(Some((piece, place))));
-        rest = tail;
-    }
-    parallel::run(watch, tasks.len(), |i| {
-        let task = tasks[i].lock().unwrap_or_else(PoisonError::into_inner).take();
-        if let Some((piece, mut place)) = task {
-            piece.iter().enumerate().for_each(|(i, &hit)| place.put(i, hit));
-        }
-    })?;
-    drop(tasks);
-    Ok(AllHits { offsets, t, face, u, v })
+    all: Lists<Hit<T>>,
+) -> Result<Result<AllHits<T>, OutOfMemory>, Interrupted> {
+    let Ok(mut hits) = AllHits::zeros(all.total()) else { return Ok(Err(OutOfMemory)) };
+    hits.offsets = all.bring(watch, hits.places(), Found::put)?;
+    Ok(Ok(hits))
 }
 
 /// Unit normals by winding of the faces that were hit; NaN where none was, and on faces without area.

@@ -4,7 +4,8 @@
 //! A structure is right if its walk hands over every triangle whose own box the ray passes (see [`super::ray`]) before the
 //! visitor's end: then its answers are brute force's to the bit. It may hand over others, and one more than once.
 
-use super::block::{self, Block};
+use super::block::{self, BLOCK, Block};
+use super::lists::OutOfMemory;
 use super::ray::{Heading, Ready, ready};
 use super::{Hit, Ray};
 use crate::real::Real;
@@ -149,7 +150,13 @@ pub trait Structure<T: Real>: Send + Sync {
 
     /// Appends every hit to `found`, by `t`, then by face, each face once.
     #[inline(never)]
-    fn all_hits<S: Simd, C: Counter>(&self, s: S, ray: &Ray<T>, counter: &mut C, found: &mut Vec<Hit<T>>) {
+    fn all_hits<S: Simd, C: Counter>(
+        &self,
+        s: S,
+        ray: &Ray<T>,
+        counter: &mut C,
+        found: &mut Vec<Hit<T>>,
+    ) -> Result<(), OutOfMemory> {
         s.vectorize(
             #[inline(always)]
             || every(self, s, ray, counter, found),
@@ -227,6 +234,7 @@ struct Every<'a, T, C> {
     heading: Heading,
     ignore: i32,
     found: &'a mut Vec<Hit<T>>,
+    full: bool,
     counter: &'a mut C,
 }
 
@@ -237,12 +245,17 @@ fn every<T: Real, S: Simd, C: Counter, A: Structure<T> + ?Sized>(
     ray: &Ray<T>,
     counter: &mut C,
     found: &mut Vec<Hit<T>>,
-) {
-    let Some((made, heading)) = ready(&structure.bounds(), ray) else { return };
+) -> Result<(), OutOfMemory> {
+    let Some((made, heading)) = ready(&structure.bounds(), ray) else { return Ok(()) };
     let first = found.len();
     let ignore = ray.ignore_face;
-    structure.walk(s, &made, heading, &mut Every { ray: &made, heading, ignore, found, counter });
+    let mut visit = Every { ray: &made, heading, ignore, found, full: false, counter };
+    structure.walk(s, &made, heading, &mut visit);
+    if visit.full {
+        return Err(OutOfMemory);
+    }
     settle(&made, found, first);
+    Ok(())
 }
 
 /// Orders a ray's hits, the entries from `first` on, by `t` and face, drops repetitions, and gives them the user's `t`.
@@ -279,6 +292,10 @@ impl<T: Real, C: Counter> Visit<T> for Every<'_, T, C> {
     #[inline(always)]
     fn leaf<S: Simd>(&mut self, s: S, blocks: &[Block<T>]) -> bool {
         count(self.counter, blocks);
+        if self.found.try_reserve(blocks.len() * BLOCK).is_err() {
+            self.full = true;
+            return true;
+        }
         block::all::<T, S>(s, blocks, self.ray, self.heading, self.ignore, self.found);
         false
     }

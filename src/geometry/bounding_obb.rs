@@ -15,6 +15,7 @@ use super::bounding_kdop::DIRECTIONS;
 use super::bounding_sphere::{Local, cross, dot, minus};
 use super::predicate::Point;
 use crate::real::Real;
+use std::sync::atomic::{AtomicBool, Ordering};
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Method {
@@ -24,6 +25,8 @@ pub enum Method {
 }
 
 type Axes = [Point; 3];
+/// Points that are sorted at a time.
+const CHUNK: usize = 1 << 14;
 const AXES: Axes = [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]];
 
 fn unit(v: Point) -> Option<Point> {
@@ -108,9 +111,12 @@ fn extreme(points: &[Point], height: impl Fn(Point) -> f64) -> Point {
 }
 
 /// The frame of a face or edge of two tetrahedra over a common triangle of extreme points that makes the smallest box.
-fn ditetrahedron(points: &[Point]) -> Axes {
+fn ditetrahedron(points: &[Point], stop: &AtomicBool) -> Axes {
     let mut outer = Vec::with_capacity(14);
     for d in &DIRECTIONS[..7] {
+        if stop.load(Ordering::Relaxed) {
+            return AXES;
+        }
         let d = d.map(f64::from);
         outer.push(extreme(points, |p| -dot(p, d)));
         outer.push(extreme(points, |p| dot(p, d)));
@@ -147,8 +153,24 @@ fn ditetrahedron(points: &[Point]) -> Axes {
     if size(points, &best.1) < size(points, &AXES) { best.1 } else { AXES }
 }
 
-/// The convex hull of points in the plane, counter-clockwise (A. Andrew's monotone chain, 1979).
-fn hull(mut p: Vec<[f64; 2]>) -> Vec<[f64; 2]> {
+/// The convex hull of many points in the plane: of the hulls of some at a time, so that nothing large is sorted.
+fn hull(points: impl Iterator<Item = [f64; 2]>, stop: &AtomicBool) -> Vec<[f64; 2]> {
+    let (mut outer, mut some) = (Vec::new(), Vec::with_capacity(CHUNK));
+    for p in points {
+        some.push(p);
+        if some.len() == CHUNK {
+            outer.append(&mut small_hull(std::mem::take(&mut some)));
+            if stop.load(Ordering::Relaxed) {
+                return outer;
+            }
+        }
+    }
+    outer.append(&mut some);
+    small_hull(outer)
+}
+
+/// The convex hull, counter-clockwise (A. Andrew's monotone chain, 1979).
+fn small_hull(mut p: Vec<[f64; 2]>) -> Vec<[f64; 2]> {
     p.sort_by(|a, b| a[0].total_cmp(&b[0]).then(a[1].total_cmp(&b[1])));
     p.dedup();
     if p.len() < 3 {
@@ -177,9 +199,9 @@ fn hull(mut p: Vec<[f64; 2]>) -> Vec<[f64; 2]> {
 }
 
 /// The frame turned about its axis `k` to the smallest rectangle around the points' shadow.
-fn turned(points: &[Point], axes: &Axes, k: usize) -> Axes {
+fn turned(points: &[Point], axes: &Axes, k: usize, stop: &AtomicBool) -> Axes {
     let (i, j) = ((k + 1) % 3, (k + 2) % 3);
-    let corners = hull(points.iter().map(|&p| [dot(p, axes[i]), dot(p, axes[j])]).collect());
+    let corners = hull(points.iter().map(|&p| [dot(p, axes[i]), dot(p, axes[j])]), stop);
     let n = corners.len();
     let mut best = (f64::INFINITY, [1.0, 0.0]);
     // The corners farthest along a side, across it, and against it go round with it.
@@ -216,14 +238,22 @@ fn turned(points: &[Point], axes: &Axes, k: usize) -> Axes {
     out
 }
 
-fn calipers(points: &[Point]) -> Axes {
+fn calipers(points: &[Point], stop: &AtomicBool) -> Axes {
     let mut best = (f64::INFINITY, AXES);
-    for start in [AXES, principal(points), ditetrahedron(points)] {
+    let starts: [fn(&[Point], &AtomicBool) -> Axes; 3] = [|_, _| AXES, |p, _| principal(p), ditetrahedron];
+    for start in starts {
+        let start = start(points, stop);
+        if stop.load(Ordering::Relaxed) {
+            return AXES;
+        }
         let (mut axes, mut last) = (start, size(points, &start));
         // Each round turns about all three axes.
         for _ in 0..20 {
             for k in 0..3 {
-                let next = turned(points, &axes, k);
+                let next = turned(points, &axes, k, stop);
+                if stop.load(Ordering::Relaxed) {
+                    return AXES;
+                }
                 if size(points, &next) < size(points, &axes) {
                     axes = next;
                 }
@@ -242,13 +272,18 @@ fn calipers(points: &[Point]) -> Axes {
     frame(best.1[0], best.1[1])
 }
 
-/// Centre, axes as rows, half extents; NaN where a point is NaN or infinite, or there is none.
-pub fn bounding_obb<T: Real>(points: &[[T; 3]], method: Method) -> ([T; 3], [T; 9], [T; 3]) {
+/// Centre, axes as rows, half extents; NaN where a point is NaN or infinite, or there is none. Returns soon, with any box,
+/// once `stop` is set.
+pub fn bounding_obb<T: Real>(
+    points: &[[T; 3]],
+    method: Method,
+    stop: &AtomicBool,
+) -> ([T; 3], [T; 9], [T; 3]) {
     let Some(local) = Local::new(points) else { return ([T::NAN; 3], [T::NAN; 9], [T::NAN; 3]) };
     let axes = match method {
         Method::Pca => principal(&local.points),
-        Method::Dito => ditetrahedron(&local.points),
-        Method::Calipers => calipers(&local.points),
+        Method::Dito => ditetrahedron(&local.points, stop),
+        Method::Calipers => calipers(&local.points, stop),
     };
     let rows: [T; 9] = std::array::from_fn(|i| T::of(axes[i / 3][i % 3]));
     let e = extents(&local.points, &axes);

@@ -34,11 +34,15 @@ pub fn plane_aabb<T: Real>(plane: [T; 4], [low, high]: [[T; 3]; 2]) -> i8 {
     -((side(n, d, far) == Ordering::Less) as i8)
 }
 
-/// The signed distance of the box's centre from the plane, and half the extent of the box along the normal.
+/// The signed distance of the box's centre from the plane, and half the extent of the box along the normal; NaN if there
+/// is no box.
 #[inline(never)]
 pub fn interval<T: Real>(plane: [T; 4], [low, high]: [[T; 3]; 2]) -> [T; 2] {
     let [a, b, c, d] = predicate::four(plane);
     let (low, high) = (predicate::point(low), predicate::point(high));
+    if !(0..3).all(|i| low[i] <= high[i]) {
+        return [T::NAN; 2];
+    }
     let (mut centre, mut radius) = (d, 0.0);
     for (i, n) in [a, b, c].into_iter().enumerate() {
         centre += n * (0.5 * (low[i] + high[i]));

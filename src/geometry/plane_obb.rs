@@ -62,11 +62,15 @@ pub fn plane_obb<T: Real>(plane: [T; 4], center: [T; 3], axes: [T; 9], half: [T;
     -((predicate::sign(below(n, d, &b), || below(n, d, &b)) == Ordering::Less) as i8)
 }
 
-/// The signed distance of the box's centre from the plane, and half the extent of the box along the normal.
+/// The signed distance of the box's centre from the plane, and half the extent of the box along the normal; NaN if there
+/// is no box.
 #[inline(never)]
 pub fn interval<T: Real>(plane: [T; 4], center: [T; 3], axes: [T; 9], half: [T; 3]) -> [T; 2] {
     let [x, y, z, d] = predicate::four(plane);
     let (n, b) = ([x, y, z], Obb::new(center, axes, half));
+    if !b.exists() {
+        return [T::NAN; 2];
+    }
     let length = (x * x + y * y + z * z).sqrt();
     let centre = super::plane_aabb::height::<predicate::Bounded>(n, d, b.center).value;
     let radius = b.reach::<predicate::Bounded>(&predicate::vector(n)).value;

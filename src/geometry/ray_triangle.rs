@@ -35,7 +35,8 @@ pub struct Crossing<V> {
 /// The axis along which a direction is longest.
 #[inline(always)]
 pub fn dominant_axis<T: Real>(d: [T; 3]) -> usize {
-    let [x, y, z] = d.map(Lanes::abs);
+    // No `map` over arrays here and below: it is compiled for the baseline alone, and called.
+    let (x, y, z) = (d[0].abs(), d[1].abs(), d[2].abs());
     if x > y {
         if x > z { 0 } else { 2 }
     } else if y > z {
@@ -62,6 +63,12 @@ pub fn along<V: Lanes>(axis: usize, d: [V; 3]) -> V::Mask {
 pub fn permutation(kz: usize) -> [usize; 3] {
     const ORDER: [[usize; 3]; 3] = [[1, 2, 0], [2, 0, 1], [0, 1, 2]];
     ORDER[kz]
+}
+
+#[inline(always)]
+fn in_order<T: Real>(k: [usize; 3], v: Vec3<T>) -> Vec3<T> {
+    let v = v.to_array();
+    Vec3::new(v[k[0]], v[k[1]], v[k[2]])
 }
 
 /// A power of two that brings the largest component `d` of a direction to the neighbourhood of one, and its inverse.
@@ -192,10 +199,12 @@ pub fn ray_triangle<T: Real>(
     let crossing = match method {
         Method::Watertight => {
             let k = permutation(dominant_axis(d.to_array()));
-            let order = |v: Vec3<T>| Vec3::from(k.map(|i| v.to_array()[i]));
-            let (p, q) = (order(d), T::one() / order(d).z);
+            let (p, q) = (in_order(k, d), T::one() / in_order(k, d).z);
             let shear = Vec3::new(p.x * q, p.y * q, q);
-            watertight(order(o), shear, order(a), order(b), order(c)).map(|(_, crossing)| crossing)
+            match watertight(in_order(k, o), shear, in_order(k, a), in_order(k, b), in_order(k, c)) {
+                Some((_, crossing)) => Some(crossing),
+                None => None,
+            }
         }
         Method::MollerTrumbore => moller_trumbore(o, d, a, b, c),
         Method::Plane => plane(o, d, a, b, c),

@@ -1,5 +1,8 @@
 """Instances answer as each object's own tree does on carried rays, to the bit; transforms are checked."""
 
+import copy
+import pickle
+
 import numpy as np
 import pytest
 import shadelab as sl
@@ -53,7 +56,7 @@ def test_equal_to_every_instance_for_itself(dtype, kind, level, shift):
         expected = each_for_itself(scene, o, d, **limits)
         with sl.simd(level):
             hit = scene.closest_hit(o, d, **limits)
-            assert all(np.array_equal(a, b) for a, b in zip(hit, expected, strict=True))
+            assert all(np.array_equal(a, b) for a, b in zip(hit[:5], expected, strict=True))
             assert np.array_equal(scene.any_hit(o, d, **limits), expected[1] >= 0)
         assert 0.01 < (hit.face >= 0).mean() < 1
 
@@ -138,3 +141,113 @@ def test_bad_transforms_are_named():
         sl.accel.InstancedBVH([bvh, sl.accel.BVH(np.asarray(box.positions, np.float32), box.faces)], bad)
     with pytest.raises(TypeError, match="objects: expected BVHs, got int at 0"):
         sl.accel.InstancedBVH([3], np.eye(4))
+
+
+def forest(dtype=np.float64):
+    """Copies of two meshes, one mirrored, that reach into each other."""
+    ball, box = sl.mesh.icosphere(1), sl.mesh.box()
+    objects = [sl.accel.BVH(m.positions.astype(dtype), m.faces) for m in (ball, box)]
+    places = [
+        sl.transform.translate([0.3, 0, 0]),
+        sl.transform.rotate_axis([1, 2, 3], 0.5),
+        sl.transform.scale([-1.0, 2.0, 0.5]) @ sl.transform.rotate_x(0.3),
+    ]
+    return sl.accel.InstancedBVH([objects[0], objects[1], objects[0]], places)
+
+
+def around(n):
+    o = np.random.default_rng(5).normal(size=(n, 3)) * 3
+    return o, -o + np.random.default_rng(6).normal(size=(n, 3)) * 0.5
+
+
+@pytest.mark.parametrize("dtype", [np.float32, np.float64])
+def test_ignored_faces_are_of_one_instance(dtype):
+    two = forest(dtype)
+    o, d = around(500)
+    hit = two.closest_hit(o, d)
+    everything = two.all_hits(o, d)
+    got = two.closest_hit(o, d, ignore_face=hit.face, ignore_instance=hit.instance)
+    others = two.all_hits(o, d, ignore_face=hit.face, ignore_instance=hit.instance)
+    for i in range(500):
+        here = slice(*everything.offsets[i : i + 2])
+        kept = [
+            (t, f, n)
+            for t, f, n in zip(everything.t[here], everything.face[here], everything.instance[here], strict=True)
+            if (f, n) != (hit.face[i], hit.instance[i])
+        ]
+        there = slice(*others.offsets[i : i + 2])
+        assert kept == list(zip(others.t[there], others.face[there], others.instance[there], strict=True))
+        assert (got.t[i], got.face[i], got.instance[i]) == (kept[0] if kept else (np.inf, -1, -1))
+    shadow = two.any_hit(o, d, ignore_face=hit.face, ignore_instance=hit.instance)
+    np.testing.assert_array_equal(shadow, got.face >= 0)
+    with pytest.raises(ValueError, match="ignore_face, ignore_instance: expected both"):
+        two.any_hit(o, d, ignore_face=3)
+    with pytest.raises(ValueError, match="ignore_instance: expected -1 or an instance below 3"):
+        two.any_hit(o, d, ignore_face=3, ignore_instance=3)
+
+
+def test_normals_are_those_of_the_placed_mesh():
+    two = forest()
+    o, d = around(500)
+    hit = two.closest_hit(o, d, normals=True)
+    met = hit.face >= 0
+    assert np.isnan(hit.normal[~met]).all()
+    for i in np.flatnonzero(met):
+        bvh = two.objects[hit.instance[i]]
+        a, b, c = sl.transform.transform_points(bvh.positions[bvh.faces[hit.face[i]]], two.transforms[hit.instance[i]])
+        n = np.cross(b - a, c - a) * np.sign(np.linalg.det(two.transforms[hit.instance[i]]))
+        assert hit.normal[i] @ n / np.linalg.norm(n) == pytest.approx(1, abs=1e-12)
+    # Closed meshes seen from outside: normals look back.
+    first = hit.normal[met]
+    assert (np.einsum("ij,ij->i", first, d[met]) < 0).mean() > 0.9
+
+
+def test_hits_are_written_where_asked():
+    two = forest()
+    o, d = around(60)
+    expected = two.closest_hit(o, d, normals=True)
+    out = sl.accel.instances.InstanceHit(
+        np.empty(60), np.empty(60, np.int32), np.empty(60), np.empty(60), np.empty(60, np.int32), np.empty((60, 3))
+    )
+    got = two.closest_hit(o, d, normals=True, out=out)
+    for a, b, c in zip(expected, got, out, strict=True):
+        assert b is c
+        np.testing.assert_array_equal(a, b)
+    lit = np.empty(60, bool)
+    assert two.any_hit(o, d, out=lit) is lit
+    np.testing.assert_array_equal(lit, expected.face >= 0)
+    with pytest.raises(TypeError, match="out: expected an InstanceHit"):
+        two.closest_hit(o, d, out=expected[:4])
+
+
+def test_counts_are_of_both_levels():
+    one = sl.accel.BVH(*(lambda m: (m.positions, m.faces))(sl.mesh.icosphere(2)))
+    o, d = around(200)
+    own = one.counts(o, d)
+    placed = sl.accel.InstancedBVH([one], np.eye(4)).counts(o, d)
+    reached = placed.triangles > 0
+    np.testing.assert_array_equal(placed.triangles[reached], own.triangles[reached])
+    # The upper tree has one node with one box.
+    entered = placed.boxes > 1
+    np.testing.assert_array_equal(placed.boxes[entered], own.boxes[entered] + 1)
+    two = forest()
+    every = two.counts(o, d, query="all_hits")
+    first, shadow = two.counts(o, d), two.counts(o, d, query="any_hit")
+    assert (every.triangles >= first.triangles).all() and (first.triangles >= shadow.triangles).all()
+    with pytest.raises(ValueError, match="query"):
+        two.counts(o, d, query="nearest")
+
+
+@pytest.mark.parametrize("copied", [copy.copy, copy.deepcopy, lambda s: pickle.loads(pickle.dumps(s))])
+def test_copies_share_objects(copied):
+    two = forest()
+    other = copied(two)
+    o, d = around(100)
+    for a, b in zip(two.all_hits(o, d), other.all_hits(o, d), strict=True):
+        np.testing.assert_array_equal(a, b)
+    assert other.objects[0] is other.objects[2] and len(other) == 3
+    assert other.stats()[:-1] == two.stats()[:-1]
+    assert two.stats().faces == two.stats().references == 3
+    assert repr(two) == "InstancedBVH(3 instances, float64)"
+    with pytest.raises(ValueError, match="lacks transforms"):
+        sl.accel.InstancedBVH.__new__(sl.accel.InstancedBVH).__setstate__({"objects": ()})

@@ -1,5 +1,9 @@
 """Faces that overlap boxes: the exact test on every triangle, and boxes that are none."""
 
+import _thread
+import threading
+import time
+
 import numpy as np
 import pytest
 import shadelab as sl
@@ -57,3 +61,18 @@ def test_threads_change_nothing():
     sl.set_threads(None)
     assert all(np.array_equal(r.offsets, results[0].offsets) for r in results)
     assert all(np.array_equal(r.face, results[0].face) for r in results)
+
+
+def test_one_box_over_many_faces_answers_an_interrupt():
+    rng = np.random.default_rng(0)
+    corners = rng.normal(size=(700_000, 1, 3)) + 0.3 * rng.normal(size=(700_000, 3, 3))
+    bvh = sl.accel.BVH(corners.reshape(-1, 3), np.arange(2_100_000).reshape(-1, 3), method="lbvh")
+    low, high = np.full((40, 3), -9.0), np.full(3, 0.01)
+    timer = threading.Timer(0.05, _thread.interrupt_main)
+    timer.start()
+    start = time.perf_counter()
+    with pytest.raises(KeyboardInterrupt):
+        bvh.overlap(low, high)
+        time.sleep(5)
+    assert time.perf_counter() - start < 1
+    timer.join()

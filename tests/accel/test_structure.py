@@ -3,6 +3,8 @@
 import _thread
 import copy
 import pickle
+import subprocess
+import sys
 import threading
 import time
 from functools import partial
@@ -314,3 +316,41 @@ def test_broken_state_is_named():
         empty = made.__new__(made)
         with pytest.raises(ValueError, match="lacks faces"):
             empty.__setstate__({"positions": mesh.positions, "options": ()})
+
+
+LIMITED = """
+import resource, sys
+import numpy as np
+import shadelab as sl
+from shadelab import accel
+corner = np.array([[0, 0, 0], [1, 0, 0], [0, 1, 0]], float)
+layers = np.concatenate([corner + [0, 0, z] for z in np.linspace(0, 1, 3000)])
+bvh = accel.BVH(layers, np.arange(9000).reshape(-1, 3))
+placed = accel.InstancedBVH([bvh], np.eye(4))
+origins = np.broadcast_to([0.2, 0.2, -1.0], (40_000, 3))
+bvh.all_hits(origins[:10], [0, 0, 1.0])
+with open("/proc/self/statm") as f:
+    used = int(f.read().split()[0]) * resource.getpagesize()
+resource.setrlimit(resource.RLIMIT_AS, (used + (600 << 20), used + (600 << 20)))
+for ask in (
+    lambda: bvh.all_hits(origins, [0, 0, 1.0]),
+    lambda: placed.all_hits(origins, [0, 0, 1.0]),
+    lambda: bvh.overlap(np.full((400_000, 3), -1.0), 2.0 * np.ones(3)),
+):
+    try:
+        ask()
+    except MemoryError as error:
+        print(error)
+"""
+
+
+@pytest.mark.skipif(not sys.platform.startswith("linux"), reason="limits its memory")
+def test_answers_that_do_not_fit_are_a_memory_error():
+    """120 million hits take more than is allowed; the process must not end."""
+    done = subprocess.run([sys.executable, "-c", LIMITED], capture_output=True, text=True, check=False)
+    assert done.returncode == 0, done.stderr
+    assert [line.split(":")[0] for line in done.stdout.splitlines()] == [
+        "no memory for all hits",
+        "no memory for all hits",
+        "no memory for all faces",
+    ]

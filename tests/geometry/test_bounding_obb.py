@@ -1,5 +1,9 @@
 """Oriented bounds: none outside; as tight as known boxes, and as trimesh's."""
 
+import _thread
+import threading
+import time
+
 import numpy as np
 import pytest
 import trimesh
@@ -98,3 +102,16 @@ def test_nan_stays_in_its_set():
     p[1, 2, 1] = np.nan
     got = geometry.bounding_obb(p)
     assert np.isfinite(got.axes[[0, 2]]).all() and np.isnan(got.center[1]).all() and np.isnan(got.half_extents[1]).all()
+
+
+def test_a_huge_set_answers_an_interrupt():
+    points = np.random.default_rng(0).normal(size=(2_000_000, 3))
+    timer = threading.Timer(0.1, _thread.interrupt_main)
+    timer.start()
+    start = time.perf_counter()
+    with pytest.raises(KeyboardInterrupt):
+        geometry.bounding_obb(points)
+        time.sleep(5)
+    # Of seconds of work; machines under load get more than the promised 0.2 s.
+    assert time.perf_counter() - start < 2
+    timer.join()

@@ -1,5 +1,6 @@
 """Balls and boxes: the sign of rational arithmetic, at touching and one ulp beside it."""
 
+import warnings
 from fractions import Fraction
 
 import numpy as np
@@ -31,3 +32,43 @@ def test_zero_radius_is_a_point_and_empty_things_meet_nothing():
         [1, 1, 1.0], [0, -1, 1, 1, np.nan], [0, 0, 0], [[1, 1, 1]] * 2 + [[-1, 1, 1]] + [[1, 1, 1]] * 2
     )
     assert got.tolist() == [True, False, False, True, False]
+
+
+def test_what_is_no_box_has_no_nearest_point():
+    """NaN and empty boxes overlap nothing, and every other field is NaN there, without a warning."""
+    good, nan = np.ones(3), np.full(3, np.nan)
+    with warnings.catch_warnings():
+        warnings.simplefilter("error")
+        for lower, upper in ((-good, nan), (nan, good), (good, -good), (-good, [1, 1, np.nan])):
+            contact = geometry.sphere_aabb([3.0, 0, 0], 1.0, lower, upper, full_output=True)
+            assert not contact.overlap
+            assert np.isnan(contact.point).all() and np.isnan(contact.distance)
+            side = geometry.plane_aabb([1.0, 0, 0, 0], lower, upper, full_output=True)
+            assert side.side == 0 and np.isnan(side.distance) and np.isnan(side.radius)
+        for half in (nan, -good, [1, -1, 1]):
+            side = geometry.plane_obb([1.0, 0, 0, 0], good, np.eye(3), half, full_output=True)
+            assert side.side == 0 and np.isnan(side.distance) and np.isnan(side.radius)
+
+
+def test_side_fields_have_the_batch_shape_and_precision():
+    radius = np.array([0.5, 3.0], np.float32)
+    for contact in (
+        geometry.sphere_aabb([3, 0, 0], radius, [-1, -1, -1], [1, 1, 1], full_output=True),
+        geometry.sphere_sphere([3, 0, 0], radius, [0, 0, 0], 1.0, full_output=True),
+        geometry.sphere_triangle([3, 0, 0], radius, [1, 0, 0], [0, 1, 0], [0, 0, 1], full_output=True),
+    ):
+        assert contact.overlap.tolist() == [False, True]
+        assert contact.point.shape == (2, 3) and contact.point.dtype == np.float32
+        assert contact.distance.shape == (2,) and contact.distance.dtype == np.float32
+        np.testing.assert_allclose(contact.distance, 2)
+
+
+def test_infinite_balls_raise_no_warning():
+    far = np.array([np.inf, 0, 0])
+    with warnings.catch_warnings():
+        warnings.simplefilter("error")
+        for a, b, ra, rb in ((far, far, 1, 1), (far, -far, 1, 1), (np.zeros(3), far, np.inf, np.inf)):
+            contact = geometry.sphere_sphere(a, ra, b, rb, full_output=True)
+            assert np.isnan(contact.point).any()
+        contact = geometry.sphere_sphere([0, 0, 0], 1.0, [3, 0, 0], [-1.0, np.nan], full_output=True)
+        assert not contact.overlap.any() and np.isnan(contact.point).all() and np.isnan(contact.distance).all()

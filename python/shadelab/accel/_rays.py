@@ -11,7 +11,7 @@ from numpy.typing import ArrayLike, NDArray
 from .. import _arrays
 from .._arrays import Floats
 
-__all__ = ["AllHits", "Hit", "Progress", "flat", "hit_arrays", "mesh_arrays", "ray_arrays"]
+__all__ = ["AllHits", "Hit", "Progress", "flat", "hit_arrays", "ignored", "mesh_arrays", "ray_arrays"]
 
 Progress = bool | Callable[[int, int], object] | None
 
@@ -81,15 +81,19 @@ def ray_arrays(
     t_min: ArrayLike,
     t_max: ArrayLike,
     ignore_face: ArrayLike | None,
+    ignore_instance: ArrayLike | None = None,
+    instances: int | None = None,
 ) -> tuple[tuple[int, ...], list[NDArray[Any]]]:
-    """The batch's shape; origins, directions, t_min, t_max, ignore_face of its length, or of length one."""
+    """The batch's shape; origins, directions, t_min, t_max and what is ignored, of its length or of length one."""
     core: dict[str, tuple[NDArray[Any], int]] = {
         "origins": (_arrays.vectors("origins", origins, 3, dtype), 1),
         "directions": (_arrays.vectors("directions", directions, 3, dtype), 1),
     }
     for name, value in (("t_min", t_min), ("t_max", t_max)):
         core[name] = (_arrays.knob_array(name, value, dtype), 0)
-    core["ignore_face"] = (_ignored_faces(ignore_face, faces), 0)
+    core["ignore_face"] = (ignored("ignore_face", ignore_face, "a face", faces), 0)
+    if instances is not None:
+        core["ignore_instance"] = (ignored("ignore_instance", ignore_instance, "an instance", instances), 0)
     # What is one for all stays one.
     many = {n: c for n, c in core.items() if c[1] or c[0].ndim}
     shape, flat = _arrays.broadcast(many)
@@ -97,15 +101,15 @@ def ray_arrays(
     return shape, [arrays.get(n, core[n][0].reshape(-1)) for n in core]
 
 
-def _ignored_faces(ignore_face: ArrayLike | None, faces: int) -> NDArray[np.int32]:
-    if ignore_face is None:
+def ignored(name: str, given: ArrayLike | None, what: str, limit: int) -> NDArray[np.int32]:
+    if given is None:
         return np.array(-1, np.int32)
-    array = _arrays.array("ignore_face", ignore_face)
+    array = _arrays.array(name, given)
     if array.dtype.kind not in "iu":
-        raise TypeError(f"ignore_face: expected integers, got dtype {array.dtype}")
-    bad = (array < -1) | (array >= max(faces, 1))
+        raise TypeError(f"{name}: expected integers, got dtype {array.dtype}")
+    bad = (array < -1) | (array >= max(limit, 1))
     if bad.any():
-        raise ValueError(f"ignore_face: expected -1 or a face below {faces}, got {array[bad].flat[0]}")
+        raise ValueError(f"{name}: expected -1 or {what} below {limit}, got {array[bad].flat[0]}")
     return np.require(array, np.int32, ["C", "A"])
 
 

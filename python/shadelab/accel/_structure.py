@@ -246,6 +246,8 @@ class Structure:
         ------
         TypeError, ValueError
             As `closest_hit` does.
+        MemoryError
+            If there is no memory for all hits.
 
         Notes
         -----

@@ -45,8 +45,8 @@ class UniformGrid(Structure):
     -----
     The structure of scenes whose triangles are of one size, spread evenly: quick to build, and steps from cell to cell
     cost little. A detailed object in a large, empty scene falls into one cell ("the teapot in a stadium"), and long
-    triangles into many: while triangles would stand in more than 32 cells on average, the resolution is halved
-    (see `resolution` for what came of it).
+    triangles into many: while triangles would stand in more than 32 cells on average, or there would be more than 2^27
+    cells, the resolution is halved (see `resolution` for what came of it).
 
     Boxes counted are the cells that the ray visits, those without triangles too. By rounding a ray may be in several
     cells at once: a plane is crossed twice, where the ray may first reach it and where it must have left it, so that

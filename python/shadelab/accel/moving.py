@@ -56,6 +56,8 @@ class Movable:
         ------
         TypeError, ValueError
             If an argument is not real, not of its shape, or does not broadcast.
+        MemoryError
+            If there is no memory for all faces.
 
         Notes
         -----

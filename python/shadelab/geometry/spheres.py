@@ -2,10 +2,10 @@
 
 from __future__ import annotations
 
-from typing import Literal, NamedTuple, overload
+from typing import Any, Literal, NamedTuple, overload
 
 import numpy as np
-from numpy.typing import ArrayLike
+from numpy.typing import ArrayLike, DTypeLike
 
 from .. import _arrays
 from .._arrays import Floats
@@ -86,13 +86,24 @@ def sphere_sphere(
     if not _arrays.flag("full_output", full_output):
         return overlap
     dtype = _arrays.result_dtype(**{n: v for n, (v, _) in given.items()})
-    a, b = (_arrays.floats(n, v, dtype) for n, v in (("a_center", a_center), ("b_center", b_center)))
+    a, b = _centers(overlap, a_center, dtype, "a_center"), _centers(overlap, b_center, dtype, "b_center")
     radius = _arrays.floats("b_radius", b_radius, dtype)
-    offset = a - b
-    apart = np.hypot(np.hypot(offset[..., 0], offset[..., 1]), offset[..., 2])
     with np.errstate(all="ignore"):
-        share = np.where(apart > radius, radius / apart, dtype.type(1))
-    return Contact(overlap, b + share[..., None] * offset, np.maximum(apart - radius, dtype.type(0)))
+        # An empty ball has no point.
+        radius = np.where(radius >= 0, radius, dtype.type(np.nan))
+        offset = a - b
+        apart = _length(offset)
+        share = np.where(apart <= radius, dtype.type(1), radius / apart)
+        return Contact(overlap, b + share[..., None] * offset, np.maximum(apart - radius, dtype.type(0)))
+
+
+def _centers(overlap: Bools, center: ArrayLike, dtype: DTypeLike, name: str = "center") -> Floats:
+    """One for each answer."""
+    return np.broadcast_to(_arrays.vectors(name, center, 3, dtype), (*overlap.shape, 3))
+
+
+def _length(v: Floats) -> Any:
+    return np.hypot(np.hypot(v[..., 0], v[..., 1]), v[..., 2])
 
 
 @overload
@@ -147,15 +158,11 @@ def sphere_aabb(
     overlap = one(_kernels.sphere_aabb, {"center": (center, 3), "radius": (radius, 0), **box})
     if not _arrays.flag("full_output", full_output):
         return overlap
-    point = one(_kernels.sphere_aabb_nearest, {"center": (center, 3), **box}, 3)
-    return _contact(overlap, center, radius, point)
-
-
-def _contact(overlap: Bools, center: ArrayLike, radius: ArrayLike, point: Floats) -> Contact:
-    dtype = _arrays.result_dtype(center=center, radius=radius, point=point)
-    offset = point.astype(dtype) - _arrays.floats("center", center, dtype)
-    distance = np.hypot(np.hypot(offset[..., 0], offset[..., 1]), offset[..., 2])
-    return Contact(overlap, point, distance)
+    dtype = _arrays.result_dtype(center=center, radius=radius, lower=lower, upper=upper)
+    centers = _centers(overlap, center, dtype)
+    point = one(_kernels.sphere_aabb_nearest, {"center": (centers, 3), **box}, 3)
+    with np.errstate(all="ignore"):
+        return Contact(overlap, point, np.asarray(_length(point - centers)))
 
 
 @overload
@@ -217,5 +224,6 @@ def sphere_triangle(
     overlap = one(_kernels.sphere_triangle, {**ball, "a": (a, 3), "b": (b, 3), "c": (c, 3)})
     if not _arrays.flag("full_output", full_output):
         return overlap
-    nearest = closest_point_triangle(center, a, b, c, full_output=True)
+    dtype = _arrays.result_dtype(center=center, radius=radius, a=a, b=b, c=c)
+    nearest = closest_point_triangle(_centers(overlap, center, dtype), a, b, c, full_output=True)
     return Contact(overlap, nearest.point, nearest.distance)

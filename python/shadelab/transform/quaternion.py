@@ -138,8 +138,8 @@ def quaternion_inverse(q: ArrayLike) -> Floats:
 
     Notes
     -----
-    Components are right to 4 rounding units of the largest, at lengths whose inverse the precision can hold. Zero gives
-    NaN.
+    Components are right to 4 rounding units of the largest, at lengths whose inverse the precision can hold; beyond
+    (subnormal ones) they are infinite or zero. Zero gives NaN.
 
     Examples
     --------
@@ -206,8 +206,8 @@ def quaternion_slerp(a: ArrayLike, b: ArrayLike, t: ArrayLike, *, shortest: bool
 
     Notes
     -----
-    Components are right to 4 rounding units, however near `a` and `b` are. With `shortest=False`, and `b` equal to `-a`
-    up to rounding, the arc's direction is open: some arc is taken, on the sphere.
+    Components are right to 4 rounding units, however near `a` and `b` are. Zero gives NaN. With `shortest=False`, and
+    `b` equal to `-a` up to rounding, the arc's direction is open: some arc is taken, on the sphere.
 
     References
     ----------

@@ -15,15 +15,16 @@
 
 use super::{Bvh, Method};
 use crate::accel::block::Block;
-use crate::accel::query::Rays;
+use crate::accel::lists::{OutOfMemory, lists, zeros};
+use crate::accel::query::{self, ALL_HITS, Query, Rays, one_or_each};
 use crate::accel::ray::ready;
-use crate::accel::structure::{Structure, Uncounted, Visit};
+use crate::accel::structure::{Counted, Counter, Stats, Structure, Uncounted, Visit};
 use crate::accel::{Hit, Ray};
 use crate::dispatch;
 use crate::parallel::{self, Interrupted, Watch};
 use crate::real::{Lanes, Real};
 use crate::simd::Simd;
-use std::sync::{Arc, Mutex, PoisonError};
+use std::sync::Arc;
 
 const PIECE: usize = 1024;
 /// Twice the bound above.
@@ -91,10 +92,30 @@ impl<T: Real> Instance<T> {
     }
 }
 
+/// A ray in the world, and the instance in which it ignores its face; -1 for none.
+#[derive(Clone, Copy)]
+struct WorldRay<T> {
+    ray: Ray<T>,
+    ignore_instance: i32,
+}
+
+impl<T: Real> WorldRay<T> {
+    /// In the space of an instance.
+    #[inline(always)]
+    fn within(&self, scene: &Instances<T>, number: i32) -> Ray<T> {
+        let mut ray = scene.instances[number as usize].carry(&self.ray);
+        if number != self.ignore_instance {
+            ray.ignore_face = -1;
+        }
+        ray
+    }
+}
+
 /// What the walk through the upper tree finds: the nearest hit, or any.
-struct Nearest<'a, T: Real, const ANY: bool> {
+struct Nearest<'a, T: Real, C, const ANY: bool> {
     scene: &'a Instances<T>,
-    ray: &'a Ray<T>,
+    ray: &'a WorldRay<T>,
+    counter: &'a mut C,
     /// In the world's scaled `t`.
     end: T,
     unscale: T,
@@ -102,23 +123,29 @@ struct Nearest<'a, T: Real, const ANY: bool> {
     instance: i32,
 }
 
-impl<T: Real, const ANY: bool> Visit<T> for Nearest<'_, T, ANY> {
+impl<T: Real, C: Counter, const ANY: bool> Visit<T> for Nearest<'_, T, C, ANY> {
     #[inline(always)]
     fn end(&self) -> T {
         self.end
     }
     #[inline(always)]
-    fn boxes(&mut self, _: usize) {}
+    fn boxes(&mut self, n: usize) {
+        self.counter.boxes(n);
+    }
     #[inline(always)]
     fn leaf<S: Simd>(&mut self, s: S, blocks: &[Block<T>]) -> bool {
         for number in numbers(blocks) {
-            let instance = &self.scene.instances[number as usize];
-            let mut ray = instance.carry(self.ray);
+            let mut ray = self.ray.within(self.scene, number);
             if self.instance >= 0 {
                 // What is as near counts too: the number decides.
                 ray.t_max = self.hit.t.next_up();
             }
-            let hit = instance.object.closest_hit(s, &ray);
+            let object = &*self.scene.instances[number as usize].object;
+            let hit = if C::COUNTS {
+                Structure::closest_hit(object, s, &ray, self.counter)
+            } else {
+                object.closest_hit(s, &ray)
+            };
             let nearer = hit.t < self.hit.t || (hit.t == self.hit.t && number < self.instance);
             if hit.is_hit() && (self.instance < 0 || nearer) {
                 (self.hit, self.instance, self.end) = (hit, number, hit.t * self.unscale);
@@ -132,28 +159,36 @@ impl<T: Real, const ANY: bool> Visit<T> for Nearest<'_, T, ANY> {
 }
 
 /// Every hit.
-struct Every<'a, T: Real> {
+struct Every<'a, T: Real, C> {
     scene: &'a Instances<T>,
-    ray: &'a Ray<T>,
+    ray: &'a WorldRay<T>,
+    counter: &'a mut C,
     end: T,
-    found: Vec<(Hit<T>, i32)>,
+    found: &'a mut Vec<(Hit<T>, i32)>,
     buffer: Vec<Hit<T>>,
+    full: bool,
 }
 
-impl<T: Real> Visit<T> for Every<'_, T> {
+impl<T: Real, C: Counter> Visit<T> for Every<'_, T, C> {
     #[inline(always)]
     fn end(&self) -> T {
         self.end
     }
     #[inline(always)]
-    fn boxes(&mut self, _: usize) {}
+    fn boxes(&mut self, n: usize) {
+        self.counter.boxes(n);
+    }
     #[inline(always)]
     fn leaf<S: Simd>(&mut self, s: S, blocks: &[Block<T>]) -> bool {
         for number in numbers(blocks) {
-            let instance = &self.scene.instances[number as usize];
-            let ray = instance.carry(self.ray);
+            let ray = self.ray.within(self.scene, number);
+            let object = &*self.scene.instances[number as usize].object;
             self.buffer.clear();
-            Structure::all_hits(&*instance.object, s, &ray, &mut Uncounted, &mut self.buffer);
+            let met = Structure::all_hits(object, s, &ray, self.counter, &mut self.buffer);
+            if met.is_err() || self.found.try_reserve(self.buffer.len()).is_err() {
+                self.full = true;
+                return true;
+            }
             self.found.extend(self.buffer.iter().map(|&hit| (hit, number)));
         }
         false
@@ -172,6 +207,14 @@ pub struct Found<'a, T> {
     pub instance: &'a mut [i32],
 }
 
+impl<T: Real> Found<'_, T> {
+    #[inline(always)]
+    fn put(&mut self, i: usize, (hit, instance): (Hit<T>, i32)) {
+        self.hits.put(i, hit);
+        self.instance[i] = instance;
+    }
+}
+
 impl<T: Send> parallel::Pieces for Found<'_, T> {
     fn items(&self) -> usize {
         self.instance.len()
@@ -182,10 +225,24 @@ impl<T: Send> parallel::Pieces for Found<'_, T> {
     }
 }
 
-/// Every hit of every ray: those of ray `i` stand from `offsets[i]` to `offsets[i + 1]`, by `t`, instance and face.
+/// Every hit of every ray, by `t`, instance and face.
 pub struct AllHits<T> {
-    pub offsets: Vec<i64>,
-    pub hits: Vec<(Hit<T>, i32)>,
+    pub hits: query::AllHits<T>,
+    pub instance: Vec<i32>,
+}
+
+/// Rays in the world. The instances in which their faces are ignored are one for all, or one a ray.
+#[derive(Clone, Copy)]
+pub struct WorldRays<'a, T> {
+    pub rays: Rays<'a, T>,
+    pub ignore_instance: &'a [i32],
+}
+
+impl<T: Real> WorldRays<'_, T> {
+    #[inline(always)]
+    fn get(&self, i: usize) -> WorldRay<T> {
+        WorldRay { ray: self.rays.get(i), ignore_instance: one_or_each(self.ignore_instance, i) }
+    }
 }
 
 impl<T: Real> Instances<T> {
@@ -213,14 +270,20 @@ impl<T: Real> Instances<T> {
     }
 
     #[inline(never)]
-    fn nearest<S: Simd, const ANY: bool>(&self, s: S, ray: &Ray<T>) -> (Hit<T>, i32) {
+    fn nearest<S: Simd, C: Counter, const ANY: bool>(
+        &self,
+        s: S,
+        ray: &WorldRay<T>,
+        counter: &mut C,
+    ) -> (Hit<T>, i32) {
         s.vectorize(
             #[inline(always)]
             || {
                 let hit = Hit::miss();
-                let walked = self.walk(s, ray, |end, unscale| Nearest::<T, ANY> {
+                let walked = self.walk(s, &ray.ray, |end, unscale| Nearest::<T, C, ANY> {
                     scene: self,
                     ray,
+                    counter,
                     end,
                     unscale,
                     hit,
@@ -231,39 +294,50 @@ impl<T: Real> Instances<T> {
         )
     }
 
+    /// Appends every hit of a ray.
     #[inline(never)]
-    fn every<S: Simd>(&self, s: S, ray: &Ray<T>, found: &mut Vec<(Hit<T>, i32)>) {
-        s.vectorize(
+    fn every<S: Simd, C: Counter>(
+        &self,
+        s: S,
+        ray: &WorldRay<T>,
+        counter: &mut C,
+        found: &mut Vec<(Hit<T>, i32)>,
+    ) -> Result<(), OutOfMemory> {
+        let first = found.len();
+        let full = s.vectorize(
             #[inline(always)]
             || {
-                let walked = self.walk(s, ray, |end, _| Every {
+                let walked = self.walk(s, &ray.ray, |end, _| Every {
                     scene: self,
                     ray,
+                    counter,
                     end,
-                    found: Vec::new(),
+                    found,
                     buffer: Vec::new(),
+                    full: false,
                 });
-                let mut own = walked.map_or(Vec::new(), |v| v.found);
-                own.sort_unstable_by(|(a, i), (b, j)| {
-                    let t = a.t.partial_cmp(&b.t).expect("hits have numbers");
-                    t.then(i.cmp(j)).then(a.face.cmp(&b.face))
-                });
-                found.append(&mut own);
+                walked.is_some_and(|v| v.full)
             },
-        )
+        );
+        if full {
+            return Err(OutOfMemory);
+        }
+        found[first..].sort_unstable_by(|(a, i), (b, j)| {
+            let t = a.t.partial_cmp(&b.t).expect("hits have numbers");
+            t.then(i.cmp(j)).then(a.face.cmp(&b.face))
+        });
+        Ok(())
     }
 
     pub fn closest_hits(
         &self,
         watch: &mut dyn Watch,
-        rays: &Rays<T>,
+        rays: &WorldRays<T>,
         found: Found<T>,
     ) -> Result<(), Interrupted> {
         parallel::for_each(watch, found, PIECE, |first, mut found| {
             dispatch!(s => for i in 0..found.instance.len() {
-                let (hit, instance) = self.nearest::<_, false>(s, &rays.get(first + i));
-                found.hits.put(i, hit);
-                found.instance[i] = instance;
+                found.put(i, self.nearest::<_, _, false>(s, &rays.get(first + i), &mut Uncounted));
             })
         })
     }
@@ -271,12 +345,12 @@ impl<T: Real> Instances<T> {
     pub fn any_hits(
         &self,
         watch: &mut dyn Watch,
-        rays: &Rays<T>,
+        rays: &WorldRays<T>,
         out: &mut [bool],
     ) -> Result<(), Interrupted> {
         parallel::for_each(watch, out, PIECE, |first, out: &mut [bool]| {
             dispatch!(s => for (i, out) in out.iter_mut().enumerate() {
-                *out = self.nearest::<_, true>(s, &rays.get(first + i)).1 >= 0;
+                *out = self.nearest::<_, _, true>(s, &rays.get(first + i), &mut Uncounted).1 >= 0;
             })
         })
     }
@@ -284,25 +358,57 @@ impl<T: Real> Instances<T> {
     pub fn all_hits(
         &self,
         watch: &mut dyn Watch,
-        rays: &Rays<T>,
+        rays: &WorldRays<T>,
         count: usize,
-    ) -> Result<AllHits<T>, Interrupted> {
-        let pieces: Vec<Mutex<Vec<_>>> = (0..count.div_ceil(PIECE)).map(|_| Mutex::default()).collect();
-        let mut offsets = vec![0i64; count + 1];
-        parallel::for_each(watch, &mut offsets[1..], PIECE, |first, ends: &mut [i64]| {
+    ) -> Result<Result<AllHits<T>, OutOfMemory>, Interrupted> {
+        let all = lists(
+            watch,
+            count,
+            ALL_HITS,
+            false,
+            |i, found, _| dispatch!(s => self.every(s, &rays.get(i), &mut Uncounted, found)),
+        )?;
+        let Ok(all) = all else { return Ok(Err(OutOfMemory)) };
+        let n = all.total();
+        let (Ok(mut hits), Ok(mut instance)) = (query::AllHits::zeros(n), zeros(n)) else {
+            return Ok(Err(OutOfMemory));
+        };
+        let into = Found { hits: hits.places(), instance: &mut instance };
+        hits.offsets = all.bring(watch, into, Found::put)?;
+        Ok(Ok(AllHits { hits, instance }))
+    }
+
+    /// Boxes of both levels and triangles that each ray tests, one ray at a time.
+    pub fn counts(
+        &self,
+        watch: &mut dyn Watch,
+        rays: &WorldRays<T>,
+        query: Query,
+        out: (&mut [i32], &mut [i32]),
+    ) -> Result<(), Interrupted> {
+        let task = if query == Query::AllHits { ALL_HITS } else { PIECE };
+        parallel::for_each(watch, out, task, |first, (boxes, triangles): (&mut [i32], &mut [i32])| {
             let mut found = Vec::new();
-            dispatch!(s => for (i, end) in ends.iter_mut().enumerate() {
-                let before = found.len();
-                self.every(s, &rays.get(first + i), &mut found);
-                *end = (found.len() - before) as i64;
-            });
-            *pieces[first / PIECE].lock().unwrap_or_else(PoisonError::into_inner) = found;
-        })?;
-        for i in 0..count {
-            offsets[i + 1] += offsets[i];
-        }
-        let mut hits = Vec::with_capacity(offsets[count] as usize);
-        pieces.into_iter().for_each(|p| hits.extend(p.into_inner().unwrap_or_else(PoisonError::into_inner)));
-        Ok(AllHits { offsets, hits })
+            dispatch!(s => for i in 0..boxes.len() {
+                let (ray, mut counted) = (rays.get(first + i), Counted::default());
+                match query {
+                    Query::ClosestHit => drop(self.nearest::<_, _, false>(s, &ray, &mut counted)),
+                    Query::AnyHit => drop(self.nearest::<_, _, true>(s, &ray, &mut counted)),
+                    Query::AllHits => {
+                        // Without memory for one ray's hits the count is of those before.
+                        let _ = self.every(s, &ray, &mut counted, &mut found);
+                        found.clear();
+                    }
+                }
+                (boxes[i], triangles[i]) = (counted.boxes as i32, counted.triangles as i32);
+            })
+        })
+    }
+
+    /// The size and make of the upper tree, over as many faces as there are instances.
+    pub fn stats(&self) -> Stats {
+        let placed = self.instances.len() * size_of::<Instance<T>>();
+        let upper = Structure::stats(&self.upper);
+        Stats { bytes: upper.bytes + placed, ..upper }
     }
 }

@@ -5,27 +5,41 @@ use super::Bvh;
 use super::node::{Child, Entry, Stack};
 use super::single::{next, planes, splat8};
 use crate::accel::block::{BLOCK, Block};
+use crate::accel::lists::{OutOfMemory, lists, zeros};
 use crate::dispatch;
 use crate::geometry::triangle_aabb::triangle_aabb;
-use crate::parallel::{self, Interrupted, Watch};
+use crate::parallel::{Interrupted, Watch};
 use crate::real::{Lanes, Real};
 use crate::simd::Simd;
-use std::sync::{Mutex, PoisonError};
+use std::sync::atomic::{AtomicBool, Ordering};
 
 /// Boxes a task.
 const PIECE: usize = 16;
+/// So many faces may take long for a single box.
+const LARGE: usize = 1 << 16;
 
 impl<T: Real> Bvh<T> {
     /// Appends the faces that overlap the box from `low` to `high`, in rising order.
     #[inline(always)]
-    fn overlap<S: Simd>(&self, s: S, low: [T; 3], high: [T; 3], found: &mut Vec<i32>) {
+    fn overlap<S: Simd>(
+        &self,
+        s: S,
+        [low, high]: [[T; 3]; 2],
+        found: &mut Vec<i32>,
+        stop: &AtomicBool,
+    ) -> Result<(), OutOfMemory> {
         let before = found.len();
         let mut stack = Stack::new();
         stack.push(Entry::new(T::zero(), Child::ROOT));
         while let Some(entry) = stack.pop() {
             let child = entry.child();
             if child.is_leaf() {
-                self.run(child).iter().for_each(|block| faces(block, [low, high], found));
+                let blocks = self.run(child);
+                found.try_reserve(blocks.len() * BLOCK)?;
+                blocks.iter().for_each(|block| faces(block, [low, high], found));
+                if stop.load(Ordering::Relaxed) {
+                    return Ok(());
+                }
                 continue;
             }
             let node = self.node(child);
@@ -42,6 +56,7 @@ impl<T: Real> Bvh<T> {
             }
         }
         found[before..].sort_unstable();
+        Ok(())
     }
 }
 
@@ -70,25 +85,17 @@ pub fn overlaps<T: Real>(
     tree: &Bvh<T>,
     low: &[[T; 3]],
     high: &[[T; 3]],
-) -> Result<(Vec<i64>, Vec<i32>), Interrupted> {
-    let pieces: Vec<Mutex<Vec<i32>>> = (0..low.len().div_ceil(PIECE)).map(|_| Mutex::default()).collect();
-    let mut offsets = vec![0i64; low.len() + 1];
-    parallel::for_each(watch, &mut offsets[1..], PIECE, |first, ends: &mut [i64]| {
-        let mut found = Vec::new();
-        dispatch!(s => for (i, end) in ends.iter_mut().enumerate() {
-            let (before, low, high) = (found.len(), low[first + i], high[first + i]);
-            // What is no box, by its order or by NaN, overlaps nothing.
-            if (0..3).all(|k| low[k] <= high[k]) {
-                tree.overlap(s, low, high, &mut found);
-            }
-            *end = (found.len() - before) as i64;
-        });
-        *pieces[first / PIECE].lock().unwrap_or_else(PoisonError::into_inner) = found;
+) -> Result<Result<(Vec<i64>, Vec<i32>), OutOfMemory>, Interrupted> {
+    let all = lists(watch, low.len(), PIECE, tree.faces > LARGE, |i, found, stop| {
+        let (low, high) = (low[i], high[i]);
+        // What is no box, by its order or by NaN, overlaps nothing.
+        if !(0..3).all(|k| low[k] <= high[k]) {
+            return Ok(());
+        }
+        dispatch!(s => tree.overlap(s, [low, high], found, stop))
     })?;
-    for i in 0..low.len() {
-        offsets[i + 1] += offsets[i];
-    }
-    let mut faces = Vec::with_capacity(offsets[low.len()] as usize);
-    pieces.into_iter().for_each(|p| faces.extend(p.into_inner().unwrap_or_else(PoisonError::into_inner)));
-    Ok((offsets, faces))
+    let Ok(all) = all else { return Ok(Err(OutOfMemory)) };
+    let Ok(mut faces) = zeros::<i32>(all.total()) else { return Ok(Err(OutOfMemory)) };
+    let offsets = all.bring(watch, &mut faces[..], |into: &mut &mut [i32], i, face| into[i] = face)?;
+    Ok(Ok((offsets, faces)))
 }

@@ -1,12 +1,14 @@
 //! Placed copies of hierarchies.
 
 use super::Tree;
-use super::rays::{HitArrays, RayArrays};
-use super::tree::Held;
-use crate::accel::bvh::instances::{Affine, Found, Instance, Instances as Placed};
+use super::rays::{HitArrays, RayArrays, hit_lists, query};
+use super::tree::{Held, StatsTuple, no_memory, tuple};
+use crate::accel::bvh::instances::{Affine, Found, Instance, Instances as Placed, WorldRays};
+use crate::accel::structure::Stats;
 use crate::python::array::{Arrays, In, Out, run, same_length};
 use crate::real;
-use numpy::IntoPyArray;
+use crate::real::Real;
+use numpy::{Element, IntoPyArray};
 use pyo3::exceptions::PyTypeError;
 use pyo3::prelude::*;
 use std::sync::Arc;
@@ -79,6 +81,7 @@ impl Instances {
         &self,
         py: Python<'_>,
         rays: [Bound<'_, PyAny>; 5],
+        ignore_instance: &Bound<'_, PyAny>,
         out: [Bound<'_, PyAny>; 4],
         instance: &Bound<'_, PyAny>,
         progress: Option<Py<PyAny>>,
@@ -86,8 +89,9 @@ impl Instances {
         let mut instance = Out::<i32>::of("instance", instance)?;
         let instance = instance.slice()?;
         real!(&rays[0], T => {
+            let ignore = In::of("ignore_instance", ignore_instance)?;
             let (rays, mut out) = (RayArrays::<T>::of(&rays)?, HitArrays::of(&out)?);
-            let (rays, hits) = (rays.get()?, out.get()?);
+            let (rays, hits) = (world(&rays, &ignore)?, out.get()?);
             let placed = placed::<T>(self)?;
             run(py, progress, |watch| placed.closest_hits(watch, &rays, Found { hits, instance }))
         })
@@ -97,14 +101,15 @@ impl Instances {
         &self,
         py: Python<'_>,
         rays: [Bound<'_, PyAny>; 5],
+        ignore_instance: &Bound<'_, PyAny>,
         out: &Bound<'_, PyAny>,
         progress: Option<Py<PyAny>>,
     ) -> PyResult<()> {
         let mut out = Out::<bool>::of("out", out)?;
         let out = out.slice()?;
         real!(&rays[0], T => {
-            let rays = RayArrays::<T>::of(&rays)?;
-            let (rays, placed) = (rays.get()?, placed::<T>(self)?);
+            let (rays, ignore) = (RayArrays::<T>::of(&rays)?, In::of("ignore_instance", ignore_instance)?);
+            let (rays, placed) = (world(&rays, &ignore)?, placed::<T>(self)?);
             run(py, progress, |watch| placed.any_hits(watch, &rays, out))
         })
     }
@@ -114,20 +119,52 @@ impl Instances {
         &self,
         py: Python<'py>,
         rays: [Bound<'py, PyAny>; 5],
+        ignore_instance: &Bound<'py, PyAny>,
         progress: Option<Py<PyAny>>,
     ) -> PyResult<Arrays<'py>> {
         real!(&rays[0], T => {
-            let rays = RayArrays::<T>::of(&rays)?;
-            let (rays, placed) = (rays.get()?, placed::<T>(self)?);
-            let found = run(py, progress, |watch| placed.all_hits(watch, &rays, rays.origins.len()))?;
-            let numbers = |of: fn(&crate::accel::Hit<T>) -> T| {
-                found.hits.iter().map(|(h, _)| of(h)).collect::<Vec<T>>().into_pyarray(py).into_any()
-            };
-            let (t, u, v) = (numbers(|h| h.t), numbers(|h| h.u), numbers(|h| h.v));
-            let face: Vec<i32> = found.hits.iter().map(|(h, _)| h.face).collect();
-            let instance: Vec<i32> = found.hits.iter().map(|&(_, i)| i).collect();
-            let (face, instance) = (face.into_pyarray(py).into_any(), instance.into_pyarray(py).into_any());
-            Ok(vec![found.offsets.into_pyarray(py).into_any(), t, face, u, v, instance])
+            let (rays, ignore) = (RayArrays::<T>::of(&rays)?, In::of("ignore_instance", ignore_instance)?);
+            let (rays, placed) = (world(&rays, &ignore)?, placed::<T>(self)?);
+            let found = run(py, progress, |watch| placed.all_hits(watch, &rays, rays.rays.origins.len()))?;
+            let found = found.map_err(|_| no_memory("hits"))?;
+            let mut all = hit_lists(py, found.hits).to_vec();
+            all.push(found.instance.into_pyarray(py).into_any());
+            Ok(all)
         })
     }
+
+    /// Boxes and triangles that each ray tests in answering a query.
+    fn counts(
+        &self,
+        py: Python<'_>,
+        name: &str,
+        rays: [Bound<'_, PyAny>; 5],
+        ignore_instance: &Bound<'_, PyAny>,
+        out: [Bound<'_, PyAny>; 2],
+        progress: Option<Py<PyAny>>,
+    ) -> PyResult<()> {
+        let (mut boxes, mut triangles) =
+            (Out::<i32>::of("boxes", &out[0])?, Out::<i32>::of("triangles", &out[1])?);
+        let out = (boxes.slice()?, triangles.slice()?);
+        real!(&rays[0], T => {
+            let (rays, ignore) = (RayArrays::<T>::of(&rays)?, In::of("ignore_instance", ignore_instance)?);
+            let (rays, placed) = (world(&rays, &ignore)?, placed::<T>(self)?);
+            run(py, progress, |watch| placed.counts(watch, &rays, query(name), out))
+        })
+    }
+
+    fn stats(&self) -> StatsTuple {
+        match (&self.single, &self.double) {
+            (Some(placed), _) => tuple(placed.stats()),
+            (_, Some(placed)) => tuple(placed.stats()),
+            _ => tuple(Stats::default()),
+        }
+    }
+}
+
+fn world<'a, T: Real + Element>(
+    rays: &'a RayArrays<'_, T>,
+    ignore_instance: &'a In<'_, i32>,
+) -> PyResult<WorldRays<'a, T>> {
+    Ok(WorldRays { rays: rays.get()?, ignore_instance: ignore_instance.slice()? })
 }

@@ -21,17 +21,16 @@ pub mod accel {
     #[pymodule_export]
     use super::instances::Instances;
     #[pymodule_export]
-    use super::morton::{morton_decode, morton_encode, radix_tree};
+    use super::morton::{morton_decode, morton_encode, morton_encode_points, radix_tree};
     #[pymodule_export]
     use super::moving::{from_bytes, overlap, refit, to_bytes};
     #[pymodule_export]
     use super::points::{Moments, Pseudonormals, closest_point, winding_number};
-    use super::rays::{HitArrays, RayArrays};
-    use super::tree::{self, Held, Other, queries};
+    use super::rays::{HitArrays, RayArrays, hit_lists, query};
+    use super::tree::{self, Held, Other, no_memory, queries};
     use crate::accel as kernels;
     use crate::accel::Bvh;
     use crate::accel::bvh::Method;
-    use crate::accel::query::Query;
     use crate::python::array::{In, Out, run};
     use crate::real;
     use numpy::IntoPyArray;
@@ -105,10 +104,8 @@ pub mod accel {
         real!(&rays[0], T => {
             let (structure, rays) = (queries::<T>(structure)?, RayArrays::<T>::of(&rays)?);
             let rays = rays.get()?;
-            let a = run(py, progress, |watch| structure.all_hits(watch, &rays, rays.origins.len()))?;
-            let (offsets, face) = (a.offsets.into_pyarray(py).into_any(), a.face.into_pyarray(py).into_any());
-            let [t, u, v] = [a.t, a.u, a.v].map(|x| x.into_pyarray(py).into_any());
-            Ok([offsets, t, face, u, v])
+            let found = run(py, progress, |watch| structure.all_hits(watch, &rays, rays.origins.len()))?;
+            Ok(hit_lists(py, found.map_err(|_| no_memory("hits"))?))
         })
     }
 
@@ -116,24 +113,19 @@ pub mod accel {
     #[pyfunction]
     fn counts(
         py: Python<'_>,
-        query: &str,
+        name: &str,
         structure: &Bound<'_, PyAny>,
         rays: [Bound<'_, PyAny>; 5],
         out: [Bound<'_, PyAny>; 2],
         progress: Option<Py<PyAny>>,
     ) -> PyResult<()> {
-        let query = match query {
-            "closest_hit" => Query::ClosestHit,
-            "any_hit" => Query::AnyHit,
-            _ => Query::AllHits,
-        };
         let (mut boxes, mut triangles) =
             (Out::<i32>::of("boxes", &out[0])?, Out::<i32>::of("triangles", &out[1])?);
         let (boxes, triangles) = (boxes.slice()?, triangles.slice()?);
         real!(&rays[0], T => {
             let (structure, rays) = (queries::<T>(structure)?, RayArrays::<T>::of(&rays)?);
             let rays = rays.get()?;
-            run(py, progress, |watch| structure.counts(watch, &rays, query, (boxes, triangles)))
+            run(py, progress, |watch| structure.counts(watch, &rays, query(name), (boxes, triangles)))
         })
     }
 

@@ -1,7 +1,7 @@
 //! The hierarchy moved, saved, and met by boxes: refit, to_bytes, from_bytes, overlap.
 
 use super::Tree;
-use super::tree::Held;
+use super::tree::{Held, no_memory};
 use crate::accel::Bvh;
 use crate::accel::bvh::overlap::overlaps;
 use crate::python::array::{In, run};
@@ -61,7 +61,8 @@ pub fn overlap<'py>(
     real!(low, T => {
         let (low, high) = (In::<T>::of("low", low)?, In::<T>::of("high", high)?);
         let (tree, low, high) = (tree.of::<T>()?, low.items()?, high.items()?);
-        let (offsets, faces) = run(py, progress, |watch| overlaps(watch, tree, low, high))?;
+        let found = run(py, progress, |watch| overlaps(watch, tree, low, high))?;
+        let (offsets, faces) = found.map_err(|_| no_memory("faces"))?;
         Ok([offsets.into_pyarray(py).into_any(), faces.into_pyarray(py).into_any()])
     })
 }

@@ -1,9 +1,9 @@
 //! Arrays of rays and of hits.
 
-use crate::accel::query::{Found, Rays};
+use crate::accel::query::{AllHits, Found, Query, Rays};
 use crate::python::array::{In, Out};
 use crate::real::Real;
-use numpy::Element;
+use numpy::{Element, IntoPyArray};
 use pyo3::prelude::*;
 
 /// The arrays of rays, held while a kernel reads them.
@@ -52,5 +52,20 @@ impl<'py, T: Real + Element> HitArrays<'py, T> {
     }
     pub fn get(&mut self) -> PyResult<Found<'_, T>> {
         Ok(Found { t: self.0.slice()?, face: self.1.slice()?, u: self.2.slice()?, v: self.3.slice()? })
+    }
+}
+
+/// Offsets, t, face, u, v.
+pub fn hit_lists<T: Real + Element>(py: Python<'_>, all: AllHits<T>) -> [Bound<'_, PyAny>; 5] {
+    let [t, u, v] = [all.t, all.u, all.v].map(|x| x.into_pyarray(py).into_any());
+    [all.offsets.into_pyarray(py).into_any(), t, all.face.into_pyarray(py).into_any(), u, v]
+}
+
+/// The query of a name that the face has checked.
+pub fn query(name: &str) -> Query {
+    match name {
+        "closest_hit" => Query::ClosestHit,
+        "any_hit" => Query::AnyHit,
+        _ => Query::AllHits,
     }
 }

@@ -5,7 +5,7 @@ use crate::accel::brute_force::BruteForce;
 use crate::accel::query::Queries;
 use crate::accel::structure::Stats;
 use crate::real::Real;
-use pyo3::exceptions::PyTypeError;
+use pyo3::exceptions::{PyMemoryError, PyTypeError};
 use pyo3::prelude::*;
 use std::sync::Arc;
 
@@ -72,14 +72,19 @@ pub fn queries<T: Held>(object: &Bound<'_, PyAny>) -> PyResult<Arc<dyn Queries<T
     T::pick_other(other.get()).cloned().ok_or_else(other_precision)
 }
 
+/// Answers that were too many.
+pub fn no_memory(what: &str) -> PyErr {
+    PyMemoryError::new_err(format!("no memory for all {what}: ask for fewer at a time"))
+}
+
 fn other_precision() -> PyErr {
     PyTypeError::new_err("the structure is of another precision")
 }
 
 /// All but the time of the build, in the order of the face's `Stats`.
-type StatsTuple = (usize, usize, usize, usize, usize, f64, usize, f64, f64);
+pub type StatsTuple = (usize, usize, usize, usize, usize, f64, usize, f64, f64);
 
-fn tuple(s: Stats) -> StatsTuple {
+pub fn tuple(s: Stats) -> StatsTuple {
     (
         s.faces,
         s.nodes,

@@ -92,12 +92,15 @@ pub fn bounding_obb(
         let (center, axes, half) = (center.items::<3>()?, axes.items::<9>()?, half.items::<3>()?);
         check(points.len(), size, half.len())?;
         let out = (center, axes, half);
-        run(py, None, |watch| parallel::for_each(watch, out, sets_a_task(size, 1 << 12), |start, (center, axes, half)| {
-            for k in 0..half.len() {
-                let set = &points[(start + k) * size..(start + k + 1) * size];
-                (center[k], axes[k], half[k]) = obb::bounding_obb(set, method);
-            }
-        }))
+        let (task, long) = (sets_a_task(size, 1 << 12), size > 1 << 14);
+        run(py, None, |watch| {
+            parallel::for_each_stoppable(watch, out, task, long, |start, (center, axes, half), stop| {
+                for k in 0..half.len() {
+                    let set = &points[(start + k) * size..(start + k + 1) * size];
+                    (center[k], axes[k], half[k]) = obb::bounding_obb(set, method, stop);
+                }
+            })
+        })
     })
 }
 
