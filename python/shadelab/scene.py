@@ -458,7 +458,7 @@ class Scene:
             np.array([m.roughness for m in seen], dtype),
             np.array([getattr(m, "emission", (0.0, 0.0, 0.0)) for m in materials], dtype),
             np.array([m.specular for m in seen], dtype),
-            np.array([m._kind for m in models], np.int32),
+            np.array([m._number() for m in models], np.int32),
             np.array([m._row() for m in models], dtype),
         )
 

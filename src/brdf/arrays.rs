@@ -1,11 +1,14 @@
 //! Any model over arrays of directions: values, densities, draws. One row of parameters serves all elements, or each
 //! has its own, or finds it by number.
 
-use super::bsdf::Bsdf;
+use super::bsdf::{Bsdf, Terms};
 use super::model::{Draw, Row};
+use super::rough_conductor::RoughConductor;
 use crate::dispatch;
 use crate::parallel::{self, Interrupted, Watch};
 use crate::real::Real;
+use crate::simd::{Simd, SimdBase};
+use crate::vec::Vec3;
 
 /// Rows of one kind, and which of them serves an element.
 #[derive(Clone, Copy)]
@@ -25,12 +28,33 @@ impl<T: Real> Rows<'_, T> {
             None => i.min(self.rows.len() - 1),
         };
         let row = &self.rows[row];
-        if row.iter().any(|x| x.is_nan()) { None } else { Bsdf::of(self.kind, row) }
+        if row.iter().any(
+            #[inline(always)]
+            |x| x.is_nan(),
+        ) {
+            None
+        } else {
+            Bsdf::of(self.kind, row)
+        }
+    }
+    /// The model of an element: the only one, or its own, held in `own`.
+    #[inline(always)]
+    fn serving<'a>(
+        &self,
+        i: usize,
+        only: &'a Option<Bsdf<T>>,
+        own: &'a mut Option<Bsdf<T>>,
+    ) -> Option<&'a Bsdf<T>> {
+        if only.is_some() {
+            return only.as_ref();
+        }
+        *own = self.at(i);
+        own.as_ref()
     }
     /// The model of all elements, if there is but one.
     #[inline(always)]
     fn only(&self) -> Option<Bsdf<T>> {
-        (self.rows.len() == 1).then(|| self.at(0)).flatten()
+        if self.rows.len() == 1 { self.at(0) } else { None }
     }
 }
 
@@ -45,14 +69,61 @@ pub fn eval_many<T: Real>(
     out: &mut [[T; 3]],
 ) -> Result<(), Interrupted> {
     parallel::for_each(watch, (wi, wo, out), PIECE, |first, (wi, wo, out)| {
-        dispatch!(_s => {
-            let only = rows.only();
+        dispatch!(s => {
+            let (only, mut own) = (rows.only(), None);
+            if let Some(Bsdf::RoughConductor(m)) = only {
+                return rough_conductor(s, &m, wi, wo, out);
+            }
             for i in 0..out.len() {
-                let bsdf = if only.is_some() { only } else { rows.at(first + i) };
-                out[i] = bsdf.map_or([T::NAN; 3], |b| b.eval(wi[i].into(), wo[i].into()).to_array());
+                out[i] = match rows.serving(first + i, &only, &mut own) {
+                    Some(bsdf) => bsdf.eval(wi[i].into(), wo[i].into()).to_array(),
+                    None => [T::NAN; 3],
+                };
             }
         })
     })
+}
+
+/// Directions of eight elements, in lanes.
+#[inline(always)]
+fn gather<T: Real, S: Simd>(s: S, w: &[[T; 3]; LANES]) -> Vec3<T::V8<S>> {
+    let mut columns = [[T::zero(); LANES]; 3];
+    for k in 0..LANES {
+        for c in 0..3 {
+            columns[c][k] = w[k][c];
+        }
+    }
+    Vec3::from(columns).map(
+        #[inline(always)]
+        |c| <T::V8<S> as SimdBase<S>>::load_array_ref(s, &c),
+    )
+}
+
+const LANES: usize = 8;
+
+/// One metal for all directions: eight at a time.
+#[inline(always)]
+fn rough_conductor<T: Real, S: Simd>(
+    s: S,
+    metal: &RoughConductor<T>,
+    wi: &[[T; 3]],
+    wo: &[[T; 3]],
+    out: &mut [[T; 3]],
+) {
+    let lanes = metal.lanes(s);
+    let (wi, wi_rest) = wi.as_chunks::<LANES>();
+    let (wo, wo_rest) = wo.as_chunks::<LANES>();
+    let (out, out_rest) = out.as_chunks_mut::<LANES>();
+    for (wi, (wo, out)) in wi.iter().zip(wo.iter().zip(out)) {
+        let f = lanes.value(gather(s, wi), gather(s, wo));
+        let (x, y, z) = (f.x.as_slice(), f.y.as_slice(), f.z.as_slice());
+        for k in 0..LANES {
+            out[k] = [x[k], y[k], z[k]];
+        }
+    }
+    for (wi, (wo, out)) in wi_rest.iter().zip(wo_rest.iter().zip(out_rest)) {
+        *out = metal.value((*wi).into(), (*wo).into()).to_array();
+    }
 }
 
 /// NaN where a parameter is.
@@ -65,10 +136,12 @@ pub fn pdf_many<T: Real>(
 ) -> Result<(), Interrupted> {
     parallel::for_each(watch, (wi, wo, out), PIECE, |first, (wi, wo, out)| {
         dispatch!(_s => {
-            let only = rows.only();
+            let (only, mut own) = (rows.only(), None);
             for i in 0..out.len() {
-                let bsdf = if only.is_some() { only } else { rows.at(first + i) };
-                out[i] = bsdf.map_or(T::NAN, |b| b.pdf(wi[i].into(), wo[i].into()));
+                out[i] = match rows.serving(first + i, &only, &mut own) {
+                    Some(bsdf) => bsdf.pdf(wi[i].into(), wo[i].into()),
+                    None => T::NAN,
+                };
             }
         })
     })
@@ -94,14 +167,49 @@ pub fn sample_many<T: Real>(
     let columns = (wo, u, out.wi, out.weight, out.pdf, out.specular, out.eta);
     parallel::for_each(watch, columns, PIECE, |first, (wo, u, wi, weight, pdf, specular, eta)| {
         dispatch!(_s => {
-            let only = rows.only();
+            let (only, mut own) = (rows.only(), None);
             for i in 0..wo.len() {
-                let bsdf = if only.is_some() { only } else { rows.at(first + i) };
-                let nan = crate::vec::Vec3::splat(T::NAN);
-                let draw = bsdf.and_then(|b| b.sample(wo[i].into(), u[i]));
+                let nan = Vec3::splat(T::NAN);
+                let draw = match rows.serving(first + i, &only, &mut own) {
+                    Some(bsdf) => bsdf.sample(wo[i].into(), u[i]),
+                    None => None,
+                };
                 let draw = draw.unwrap_or(Draw { wi: nan, weight: nan, pdf: T::NAN, specular: false, eta: T::NAN });
                 (wi[i], weight[i]) = (draw.wi.to_array(), draw.weight.to_array());
                 (pdf[i], specular[i], eta[i]) = (draw.pdf, draw.specular, draw.eta);
+            }
+        })
+    })
+}
+
+/// Factors as columns: half vector, D, F, G; NaN of models that have none.
+pub struct TermColumns<'a, T> {
+    pub half: &'a mut [[T; 3]],
+    pub distribution: &'a mut [T],
+    pub fresnel: &'a mut [[T; 3]],
+    pub masking: &'a mut [T],
+}
+
+pub fn terms_many<T: Real>(
+    watch: &mut dyn Watch,
+    rows: Rows<'_, T>,
+    wi: &[[T; 3]],
+    wo: &[[T; 3]],
+    out: TermColumns<'_, T>,
+) -> Result<(), Interrupted> {
+    let columns = (wi, wo, out.half, out.distribution, out.fresnel, out.masking);
+    parallel::for_each(watch, columns, PIECE, |first, (wi, wo, half, distribution, fresnel, masking)| {
+        dispatch!(_s => {
+            for i in 0..wi.len() {
+                let terms = match rows.at(first + i) {
+                    Some(bsdf) => bsdf.terms(wi[i].into(), wo[i].into()),
+                    None => None,
+                };
+                let nan = Vec3::splat(T::NAN);
+                let none = Terms { half: nan, distribution: T::NAN, fresnel: nan, masking: T::NAN };
+                let t = terms.unwrap_or(none);
+                (half[i], distribution[i]) = (t.half.to_array(), t.distribution);
+                (fresnel[i], masking[i]) = (t.fresnel.to_array(), t.masking);
             }
         })
     })

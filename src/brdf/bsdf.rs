@@ -2,11 +2,17 @@
 
 use super::conductor::Conductor;
 use super::dielectric::Dielectric;
+use super::kulla_conty::Compensated;
 use super::lambert::Diffuse;
 use super::metallic_roughness::Lobes;
 use super::model::{Draw, Model, Row};
+use super::oren_nayar::OrenNayar;
+use super::phong::Phong;
+use super::plastic::Plastic;
+use super::principled::Principled;
 use super::rough_conductor::RoughConductor;
 use super::rough_dielectric::RoughDielectric;
+use super::specular_glossiness::SpecularGlossiness;
 use crate::real::Real;
 use crate::vec::Vec3;
 
@@ -59,6 +65,22 @@ models! {
     3 Dielectric(Dielectric),
     4 RoughConductor(RoughConductor),
     5 RoughDielectric(RoughDielectric),
+    6 OrenNayar(OrenNayar),
+    7 Phong(Phong),
+    8 Plastic(Plastic),
+    9 SpecularGlossiness(SpecularGlossiness),
+    10 Compensated(Compensated),
+    11 Principled(Principled),
+}
+
+/// The factors of a microfacet model, f = D F G / (4 cos θi cos θo).
+#[derive(Clone, Copy, Debug)]
+pub struct Terms<T> {
+    /// Unit.
+    pub half: Vec3<T>,
+    pub distribution: T,
+    pub fresnel: Vec3<T>,
+    pub masking: T,
 }
 
 impl<T: Real> Bsdf<T> {
@@ -73,7 +95,29 @@ impl<T: Real> Bsdf<T> {
     /// are seen from above; callers turn the frame for the two sides of a thin surface.
     #[inline(always)]
     pub fn transmits(&self) -> bool {
-        matches!(self, Bsdf::Dielectric(_) | Bsdf::RoughDielectric(_))
+        match self {
+            Bsdf::Principled(p) => p.later && p.spec_trans > T::zero() && p.metallic < T::one(),
+            _ => matches!(self, Bsdf::Dielectric(_) | Bsdf::RoughDielectric(_)),
+        }
+    }
+    /// D, F, G and the half vector of models of facets; None of others.
+    #[inline(always)]
+    pub fn terms(&self, wi: Vec3<T>, wo: Vec3<T>) -> Option<Terms<T>> {
+        let half = (wi + wo).normalize();
+        let c = wo.dot(half);
+        let (facets, fresnel) = match self {
+            Bsdf::RoughConductor(m) => (m.facets, m.fresnel(c)),
+            Bsdf::Compensated(m) => (m.once.facets, m.once.fresnel(c)),
+            Bsdf::RoughDielectric(m) => (m.facets, m.fresnel(c, wo)),
+            Bsdf::Principled(m) => (m.glass.facets, m.mirrors(c)),
+            Bsdf::MetallicRoughness(m) => (m.facets(), m.fresnel(c)),
+            Bsdf::SpecularGlossiness(SpecularGlossiness(m)) => (m.facets(), m.fresnel(c)),
+            _ => return None,
+        };
+        let (zero, same) = (T::zero(), wi.z > T::zero() && wo.z > T::zero());
+        let masking = facets.visibility(wi, wo, half) * T::of(4.0) * wi.z * wo.z;
+        let masking = if same || half.z.is_nan() { masking } else { zero };
+        Some(Terms { half, distribution: facets.distribution(half), fresnel, masking })
     }
     /// Whether every draw is specular, so that light samples are of no use.
     #[inline(always)]

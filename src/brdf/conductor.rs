@@ -1,6 +1,6 @@
 //! The smooth metal: a mirror whose reflectance is Fresnel's for a complex index, per channel.
 
-use super::fresnel::fresnel_conductor;
+use super::fresnel::fresnel_metal;
 use super::model::{Draw, Model, Row, triple};
 use crate::real::Real;
 use crate::vec::Vec3;
@@ -17,7 +17,13 @@ impl<T: Real> Conductor<T> {
     /// The reflectance at a cosine.
     #[inline(always)]
     pub fn reflectance(&self, cos_theta: T) -> Vec3<T> {
-        self.eta.zip(self.k, |eta, k| fresnel_conductor(cos_theta, eta, k).average()).times(self.tint)
+        self.eta
+            .zip(
+                self.k,
+                #[inline(always)]
+                |eta, k| fresnel_metal(cos_theta, eta, k),
+            )
+            .times(self.tint)
     }
 }
 
@@ -37,12 +43,10 @@ impl<T: Real> Model<T> for Conductor<T> {
     #[inline(always)]
     fn sample(&self, wo: Vec3<T>, _u: [T; 3]) -> Option<Draw<T>> {
         let one = T::one();
-        (wo.z > T::zero()).then(|| Draw {
-            wi: Vec3::new(-wo.x, -wo.y, wo.z),
-            weight: self.reflectance(wo.z),
-            pdf: one,
-            specular: true,
-            eta: one,
-        })
+        if !(wo.z > T::zero()) {
+            return None;
+        }
+        let wi = Vec3::new(-wo.x, -wo.y, wo.z);
+        Some(Draw { wi, weight: self.reflectance(wo.z), pdf: one, specular: true, eta: one })
     }
 }

@@ -61,26 +61,41 @@ pub fn fresnel_dielectric<V: Lanes>(cos_theta: V, eta: V) -> Fresnel<V> {
     Fresnel { s: clean(s), p: clean(p), cos_t: g / eta }
 }
 
-/// At a metal of index η + ik; cos θ in [0, 1].
+/// Of the refracted wave in a metal, whose index cosine is a + ib: a² + b², and 2 c a.
 #[inline(always)]
-pub fn fresnel_conductor<V: Lanes>(cos_theta: V, eta: V, k: V) -> Fresnel<V> {
+fn in_metal<V: Lanes>(c: V, eta: V, k: V) -> (V, V) {
     let (one, two, half) = (eta.num(1.0), eta.num(2.0), eta.num(0.5));
-    let c = cos_theta;
-    let c2 = c * c;
-    let s2 = (one - c) * (one + c);
-    // (a + ib)² = (η + ik)² − sin²; a² + b² from its absolute value.
-    let real = (eta - k) * (eta + k) - s2;
+    // (a + ib)² = (η + ik)² − sin²; a² + b² is its absolute value.
+    let real = (eta - k) * (eta + k) - (one - c) * (one + c);
     let imaginary = two * eta * k;
     let sum = (real * real + imaginary * imaginary).sqrt();
     // The root of the smaller part comes from the product where the sum would cancel.
     let larger = (half * (sum + real.abs())).sqrt();
     let smaller = half * imaginary / larger;
     let a = V::select(real.less(real.num(0.0)), smaller, larger);
-    let twice = two * c * a;
+    (sum, two * c * a)
+}
+
+/// At a metal of index η + ik; cos θ in [0, 1].
+#[inline(always)]
+pub fn fresnel_conductor<V: Lanes>(cos_theta: V, eta: V, k: V) -> Fresnel<V> {
+    let c2 = cos_theta * cos_theta;
+    let s2 = (eta.num(1.0) - cos_theta) * (eta.num(1.0) + cos_theta);
+    let (sum, twice) = in_metal(cos_theta, eta, k);
     let s = (sum + c2 - twice) / (sum + c2 + twice);
     let (t1, t2) = (c2 * sum + s2 * s2, twice * s2);
     let p = s * ((t1 - t2) / (t1 + t2));
     Fresnel { s, p, cos_t: eta.num(0.0) }
+}
+
+/// The same of unpolarised light by one division: (1 + (t1 − t2) / (t1 + t2)) / 2 = t1 / (t1 + t2).
+#[inline(always)]
+pub fn fresnel_metal<V: Lanes>(cos_theta: V, eta: V, k: V) -> V {
+    let c2 = cos_theta * cos_theta;
+    let s2 = (eta.num(1.0) - cos_theta) * (eta.num(1.0) + cos_theta);
+    let (sum, twice) = in_metal(cos_theta, eta, k);
+    let (near, across) = (sum + c2, c2 * sum + s2 * s2);
+    (near - twice) * across / ((near + twice) * (across + twice * s2))
 }
 
 /// NaN unless in [0, 1].

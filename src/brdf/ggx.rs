@@ -36,7 +36,10 @@ pub fn ggx<T: Real>(wi: Vec3<T>, wo: Vec3<T>, alpha: T, f0: Vec3<T>, masking: Ma
     }
     let (dv, cos_half) = distribution_and_visibility(wi, wo, alpha, masking);
     let weight = schlick_weight(Lanes::min(cos_half, T::one()));
-    f0.map(|f0| dv * (f0 + (T::one() - f0) * weight))
+    f0.map(
+        #[inline(always)]
+        |f0| dv * (f0 + (T::one() - f0) * weight),
+    )
 }
 
 /// A direction `wi` for `wo` above the horizon, from two numbers of [0, 1); may lie below the horizon.

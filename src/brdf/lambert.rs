@@ -53,8 +53,11 @@ pub fn cosine_pdf<T: Real>(wi: Vec3<T>, wo: Vec3<T>) -> T {
 /// A direction by the cosine, for models that are nearly diffuse.
 #[inline(always)]
 pub fn cosine_sample<T: Real, M: Model<T>>(model: &M, wo: Vec3<T>, u: [T; 3]) -> Option<Draw<T>> {
+    if !(wo.z > T::zero()) {
+        return None;
+    }
     let wi = square_to_cosine_hemisphere([u[0], u[1]], Method::Concentric);
-    (wo.z > T::zero()).then(|| weighed(model, wi, wo, T::one()))
+    Some(weighed(model, wi, wo, T::one()))
 }
 
 /// [`lambert`] over arrays of equal length; NaN where the albedo is not in [0, 1].

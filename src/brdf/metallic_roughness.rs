@@ -11,6 +11,7 @@
 
 use super::fresnel::schlick_weight;
 use super::ggx::{self, Masking};
+use super::microfacets::Microfacets;
 use super::model::{Draw, Model, Row, triple, weighed};
 use crate::dispatch;
 use crate::parallel::{self, Interrupted, Watch};
@@ -56,7 +57,10 @@ impl<T: Real> Material<T> {
             diffuse: self.base_color * rest,
             base_f0,
             base_f90: self.specular,
-            f0: self.base_color.map(|c| rest * base_f0 + m * c),
+            f0: self.base_color.map(
+                #[inline(always)]
+                |c| rest * base_f0 + m * c,
+            ),
             f90: rest * self.specular + m,
             alpha: Lanes::max(self.roughness * self.roughness, T::of(MIN_ALPHA)),
         }
@@ -85,12 +89,24 @@ impl<T: Real> Lobes<T> {
     pub fn is_specular(&self) -> bool {
         self.f90 > T::zero()
     }
+    #[inline(always)]
+    pub fn facets(&self) -> Microfacets<T> {
+        Microfacets::ggx(self.alpha, Masking::HeightCorrelated)
+    }
+    /// The reflectance of a mirror at a cosine.
+    #[inline(always)]
+    pub fn fresnel(&self, cos_half: T) -> Vec3<T> {
+        let weight = schlick_weight(Lanes::min(cos_half, T::one()));
+        self.f0.map(
+            #[inline(always)]
+            |f0| f0 + (self.f90 - f0) * weight,
+        )
+    }
     /// The mirrors' part of the BRDF; both directions above the horizon.
     #[inline(always)]
     pub fn specular(&self, wi: Vec3<T>, wo: Vec3<T>) -> Vec3<T> {
         let (dv, cos_half) = ggx::distribution_and_visibility(wi, wo, self.alpha, Masking::HeightCorrelated);
-        let weight = schlick_weight(Lanes::min(cos_half, T::one()));
-        self.f0.map(|f0| dv * (f0 + (self.f90 - f0) * weight))
+        self.fresnel(cos_half) * dv
     }
     /// The BRDF in sr⁻¹; zero unless both directions are above the horizon.
     #[inline(always)]
@@ -146,7 +162,10 @@ impl<T: Real> Model<T> for Lobes<T> {
     }
     #[inline(always)]
     fn sample(&self, wo: Vec3<T>, u: [T; 3]) -> Option<Draw<T>> {
-        (wo.z > T::zero()).then(|| weighed(self, Lobes::sample(self, wo, u), wo, T::one()))
+        if !(wo.z > T::zero()) {
+            return None;
+        }
+        Some(weighed(self, Lobes::sample(self, wo, u), wo, T::one()))
     }
 }
 

@@ -2,11 +2,19 @@
 //! frame whose z is the normal.
 //!
 //! - [`fresnel`]: reflectance of clear bodies and metals, and Schlick's
-//! - [`lambert`]: the perfect diffuser
+//! - [`reflect`]: the mirrored and the refracted direction
+//! - [`fresnel_average`]: what an interface reflects of diffuse light
+//! - [`lambert`], [`oren_nayar`]: diffusers, smooth and rough
+//! - [`phong`]: highlights by powers of cosines
+//! - [`plastic`]: a diffuser under a smooth coat
+//! - [`ndf`]: distributions of normals beyond GGX's
 //! - [`ggx`]: rough mirrors
 //! - [`conductor`], [`dielectric`]: smooth metal, smooth glass
 //! - [`rough_conductor`], [`rough_dielectric`]: both of microscopic facets
 //! - [`metallic_roughness`]: the material of real-time shading and path tracing alike
+//! - [`specular_glossiness`]: its sibling, and the way between both
+//! - [`kulla_conty`]: rough metal with the light of further bounces
+//! - [`principled`]: the artist's model of film
 //! - [`Bsdf`]: any of them, as kernels hold it
 
 mod arrays;
@@ -14,16 +22,26 @@ mod bsdf;
 pub mod conductor;
 pub mod dielectric;
 pub mod fresnel;
+pub mod fresnel_average;
 pub mod ggx;
+pub mod kulla_conty;
 pub mod lambert;
 pub mod metallic_roughness;
-pub(crate) mod microfacets;
+mod microfacets;
 mod model;
+pub mod ndf;
+pub mod oren_nayar;
+pub mod phong;
+pub mod plastic;
+pub mod principled;
+pub mod reflect;
 pub mod rough_conductor;
 pub mod rough_dielectric;
+pub mod specular_glossiness;
 
-pub use arrays::{Draws, Rows, eval_many, pdf_many, sample_many};
-pub use bsdf::Bsdf;
+pub use arrays::{Draws, Rows, TermColumns, eval_many, pdf_many, sample_many, terms_many};
+pub use bsdf::{Bsdf, Terms};
+pub use microfacets::{Masking, Microfacets, Shape};
 pub use model::{Draw, Model, Row, WIDTH};
 
 use crate::real::Real;

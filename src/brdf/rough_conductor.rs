@@ -4,10 +4,11 @@
 //!
 //! B. Walter, S. R. Marschner, H. Li, K. E. Torrance, *Microfacet models for refraction through rough surfaces*, 2007.
 
-use super::fresnel::fresnel_conductor;
+use super::fresnel::fresnel_metal;
 use super::microfacets::Microfacets;
 use super::model::{Draw, Model, Row, triple, weighed};
 use crate::real::{Lanes, Real};
+use crate::simd::{Simd, SimdBase};
 use crate::vec::Vec3;
 
 #[derive(Clone, Copy, Debug)]
@@ -28,8 +29,51 @@ impl<V: Lanes> RoughConductor<V> {
         // Unit directions: (wi + wo)·wo = |wi + wo|² / 2.
         let cos_half = (half.length_squared().sqrt() * zero.num(0.5)).min(zero.num(1.0));
         let apart = wi.z.less_eq(zero) | wo.z.less_eq(zero);
-        let f = self.eta.zip(self.k, |eta, k| fresnel_conductor(cos_half, eta, k).average());
-        f.zip(self.tint, |f, tint| V::select(apart, zero, f * tint * d))
+        self.fresnel(cos_half).map(
+            #[inline(always)]
+            |f| V::select(apart, zero, f * d),
+        )
+    }
+    /// The reflectance of a mirror at a cosine.
+    #[inline(always)]
+    pub fn fresnel(&self, cos_half: V) -> Vec3<V> {
+        self.eta
+            .zip(
+                self.k,
+                #[inline(always)]
+                |eta, k| fresnel_metal(cos_half, eta, k),
+            )
+            .times(self.tint)
+    }
+}
+
+/// A number in every lane.
+#[inline(always)]
+fn all<T: Real, S: Simd>(s: S, x: T) -> T::V8<S> {
+    <T::V8<S> as SimdBase<S>>::splat(s, x)
+}
+
+impl<T: Real> RoughConductor<T> {
+    /// The same metal in every lane.
+    #[inline(always)]
+    pub fn lanes<S: Simd>(&self, s: S) -> RoughConductor<T::V8<S>> {
+        let Microfacets { alpha_x, alpha_y, ratio: [ratio, inverse], shape, masking } = self.facets;
+        let (alpha_x, alpha_y) = (all(s, alpha_x), all(s, alpha_y));
+        RoughConductor {
+            tint: self.tint.map(
+                #[inline(always)]
+                |x| all(s, x),
+            ),
+            eta: self.eta.map(
+                #[inline(always)]
+                |x| all(s, x),
+            ),
+            k: self.k.map(
+                #[inline(always)]
+                |x| all(s, x),
+            ),
+            facets: Microfacets { alpha_x, alpha_y, ratio: [all(s, ratio), all(s, inverse)], shape, masking },
+        }
     }
 }
 

@@ -26,6 +26,11 @@ impl<T: Real> RoughDielectric<T> {
     fn across(&self, wo: Vec3<T>) -> T {
         if wo.z > T::zero() { self.eta } else { T::one() / self.eta }
     }
+    /// The reflectance of an interface at a cosine.
+    #[inline(always)]
+    pub fn fresnel(&self, cos_half: T, wo: Vec3<T>) -> Vec3<T> {
+        Vec3::splat(fresnel_dielectric(cos_half.abs(), self.across(wo)).average())
+    }
     /// Both directions with `wo` above the horizon: the surface is the same seen from below.
     #[inline(always)]
     fn upright(wi: Vec3<T>, wo: Vec3<T>) -> (Vec3<T>, Vec3<T>) {
@@ -64,7 +69,7 @@ impl<T: Real> Model<T> for RoughDielectric<T> {
             let f = fresnel_dielectric(cos_half, eta).average();
             return Vec3::splat(self.facets.distribution(half) * self.facets.visibility(wi, wo, half) * f);
         }
-        let Some((half, sum)) = Self::bend(wi, wo, eta) else { return none + wi * T::zero() };
+        let Some((half, sum)) = Self::bend(wi, wo, eta) else { return Vec3::splat(wi.dot(wo) * T::zero()) };
         let (ci, co) = (wi.dot(half).abs(), wo.dot(half).abs());
         let through = T::one() - fresnel_dielectric(co, eta).average();
         let masked = self.facets.masking_of(wi) * self.facets.masking_of(wo);
@@ -86,7 +91,7 @@ impl<T: Real> Model<T> for RoughDielectric<T> {
             let f = fresnel_dielectric(cos_half, eta).average();
             return self.facets.density_over_cosine(wo, half) * f * T::of(0.25);
         }
-        let Some((half, sum)) = Self::bend(wi, wo, eta) else { return zero + wi.z * zero };
+        let Some((half, sum)) = Self::bend(wi, wo, eta) else { return wi.dot(wo) * zero };
         let (ci, co) = (wi.dot(half).abs(), wo.dot(half).abs());
         let through = T::one() - fresnel_dielectric(co, eta).average();
         let bent = eta / sum;

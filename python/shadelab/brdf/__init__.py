@@ -4,7 +4,11 @@ Directions are unit vectors that leave the surface, in the local frame whose z i
 to the eye. Values are BRDFs in sr⁻¹, without the cosine; densities are per solid angle of `wi`.
 """
 
-from ._model import Draws, Model
+from ._model import Draws, Model, Terms
+from .facets import *  # noqa: F403
+from .facets import __all__ as _facets
+from .furnace import *  # noqa: F403
+from .furnace import __all__ as _furnace
 from .interface import *  # noqa: F403
 from .interface import __all__ as _interface
 from .metallic import *  # noqa: F403
@@ -13,9 +17,14 @@ from .mirrors import *  # noqa: F403
 from .mirrors import __all__ as _mirrors
 from .models import *  # noqa: F403
 from .models import __all__ as _models
+from .workflow import *  # noqa: F403
+from .workflow import __all__ as _workflow
 
-__all__: list[str] = ["Draws", "Model"]
-__all__ += _mirrors
+__all__: list[str] = ["Draws", "Model", "Terms"]
+__all__ += _facets
+__all__ += _furnace
 __all__ += _interface
 __all__ += _metallic
+__all__ += _mirrors
 __all__ += _models
+__all__ += _workflow

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass, field, fields
-from typing import Any, ClassVar, NamedTuple
+from typing import Any, ClassVar, Literal, NamedTuple, overload
 
 import numpy as np
 from numpy.typing import ArrayLike, DTypeLike, NDArray
@@ -13,7 +13,7 @@ from .. import _arrays
 from .._arrays import Floats
 from .._kernels import brdf as _kernels
 
-__all__ = ["Draws", "Model"]
+__all__ = ["Draws", "Model", "Terms"]
 
 ROW: int = _kernels.row_width()
 
@@ -50,6 +50,21 @@ class Draws(NamedTuple):
     """Index of refraction on the side of `wi` over that on the side of `wo`: one unless the draw crosses."""
 
 
+class Terms(NamedTuple):
+    """The factors of a microfacet model, value = D F G / (4 cos θi cos θo)."""
+
+    value: Floats
+    """The BRDF in sr⁻¹ with all its parts, shape (..., 3)."""
+    half: Floats
+    """Unit half vectors, shape (..., 3)."""
+    distribution: Floats
+    """D: density of facets' normals at the half vector."""
+    fresnel: Floats
+    """F: reflectance of a facet, shape (..., 3)."""
+    masking: Floats
+    """G: share of facets that both directions see; zero across the horizon."""
+
+
 @dataclass(frozen=True)
 class Model:
     """A reflection model: what `eval`, `pdf` and `sample` mean for all of them.
@@ -63,6 +78,7 @@ class Model:
 
     _kind: ClassVar[int]
     _transmits: ClassVar[bool] = False
+    _facets: ClassVar[bool] = False
 
     def __post_init__(self) -> None:
         for f in fields(self):
@@ -75,6 +91,10 @@ class Model:
     def _numbers(self) -> list[Any]:
         """The row's numbers in order: of each a number, a triple, or an array of them with the core it has."""
         return [(value, meta) for value, meta in self._parameters()]
+
+    def _number(self) -> int:
+        """The kind as kernels count it."""
+        return self._kind
 
     def _parameters(self) -> list[tuple[Any, Any]]:
         return [(getattr(self, f.name), f.metadata) for f in fields(self) if f.metadata]
@@ -114,11 +134,11 @@ class Model:
         size = math.prod(lead)
         if size == 1:
             shape, flat = _arrays.broadcast(core)
-            return np.broadcast_shapes(lead, shape), flat, (self._kind, rows.reshape(1, ROW), None)
+            return np.broadcast_shapes(lead, shape), flat, (self._number(), rows.reshape(1, ROW), None)
         number = np.arange(size, dtype=dtype).reshape(lead)
         shape, (*flat, _) = _arrays.broadcast(core | {"parameters": (number, 0)})
         ids = np.ascontiguousarray(np.broadcast_to(np.arange(size, dtype=np.int32).reshape(lead), shape)).reshape(-1)
-        return shape, flat, (self._kind, rows.reshape(-1, ROW), None if size == len(ids) else ids)
+        return shape, flat, (self._number(), rows.reshape(-1, ROW), None if size == len(ids) else ids)
 
     def _row(self) -> Floats:
         """The row of a model whose parameters are lone numbers: what a scene holds."""
@@ -131,7 +151,15 @@ class Model:
         """The metallic-roughness material that comes nearest: what shading without this model shows."""
         raise NotImplementedError
 
-    def eval(self, wi: ArrayLike, wo: ArrayLike, *, out: Floats | None = None) -> Floats:
+    @overload
+    def eval(
+        self, wi: ArrayLike, wo: ArrayLike, *, out: Floats | None = ..., full_output: Literal[False] = ...
+    ) -> Floats: ...
+    @overload
+    def eval(self, wi: ArrayLike, wo: ArrayLike, *, out: Floats | None = ..., full_output: Literal[True]) -> Terms: ...
+    def eval(
+        self, wi: ArrayLike, wo: ArrayLike, *, out: Floats | None = None, full_output: bool = False
+    ) -> Floats | Terms:
         """The BSDF in sr⁻¹, without the cosine.
 
         Parameters
@@ -140,16 +168,18 @@ class Model:
             Unit directions to the light and to the eye, z the normal.
         out : ndarray, optional
             To write into.
+        full_output : bool
+            Give `Terms`, of models of facets: half vectors, D, F, G.
 
         Returns
         -------
-        ndarray, shape (..., 3)
+        ndarray, shape (..., 3), or Terms
             Zero where nothing is reflected or transmitted, and of models that are specular.
 
         Raises
         ------
         TypeError, ValueError
-            If shapes do not fit, or `out` does not.
+            If shapes do not fit, or `out` does not, or terms are asked of a model that has none.
 
         Examples
         --------
@@ -160,7 +190,15 @@ class Model:
         shape, (wi, wo), table = self._given(wi=wi, wo=wo)
         out = _arrays.output("out", out, (*shape, 3), wi.dtype)
         _kernels.model_eval(table, wi, wo, out.reshape(-1, 3))
-        return out
+        if not full_output:
+            return out
+        if not self._facets:
+            raise ValueError(f"full_output: {type(self).__name__} is no model of facets")
+        n, dtype = len(wi), wi.dtype
+        terms = [np.empty(s, dtype) for s in ((n, 3), n, (n, 3), n)]
+        _kernels.model_terms(table, wi, wo, terms)
+        half, distribution, fresnel, masking = (t.reshape(*shape, *t.shape[1:]) for t in terms)
+        return Terms(out, half, distribution, fresnel, masking)
 
     def pdf(self, wi: ArrayLike, wo: ArrayLike) -> Floats:
         """The density of `sample` per solid angle of `wi`.

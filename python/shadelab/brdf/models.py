@@ -8,18 +8,30 @@ import math
 from dataclasses import dataclass
 from typing import Any, ClassVar, Literal
 
+import numpy as np
+
 from ._model import Model, color, option, parameter
+from .interface import fresnel_average
+from .workflow import to_metallic_roughness
 
 __all__ = [
+    "BlinnPhong",
     "Conductor",
     "Dielectric",
     "Diffuse",
     "MetallicRoughness",
+    "OrenNayar",
+    "Phong",
+    "Plastic",
+    "Principled",
     "RoughConductor",
     "RoughDielectric",
+    "SpecularGlossiness",
 ]
 
 SHAPES = ("ggx", "beckmann")
+DIFFUSERS = ("qualitative", "energy_preserving")
+COMPENSATIONS = ("none", "kulla_conty", "kulla_conty_as_published", "scaled")
 MASKINGS = ("height_correlated", "separable", "schlick", "v_cavity")
 # Copper, at 630, 532 and 465 nm.
 COPPER_ETA = (0.2004, 0.924, 1.1022)
@@ -49,6 +61,7 @@ class MetallicRoughness(Model):
     roughness: Any = parameter(0.5, 0, 0, 1)
     specular: Any = parameter(1.0, 0, 0, 1)
     _kind: ClassVar[int] = 0
+    _facets: ClassVar[bool] = True
 
     def _stand_in(self) -> MetallicRoughness:
         return self
@@ -159,6 +172,7 @@ class _Rough(Model):
 
     alpha: Any
     alpha_y: Any
+    _facets: ClassVar[bool] = True
 
     def __post_init__(self) -> None:
         if self.alpha_y is None:
@@ -183,15 +197,20 @@ class RoughConductor(_Rough):
         How mirrors hide each other: see `masking_shadowing`.
     tint : array_like, shape (..., 3)
         A factor of the reflectance, in [0, 1].
+    compensation : {"none", "kulla_conty", "kulla_conty_as_published", "scaled"}
+        Of the light that mirrors throw at each other: lost; given back as a lobe of its own (see `kulla_conty`); or the
+        single bounce times ``1 + F0 (1/E(θo) − 1)``, which is cheaper and not reciprocal.
 
     Notes
     -----
-    One bounce: what mirrors hide from each other is lost (`white_furnace` says how much). GGX normals are drawn as they
-    are seen from `wo`, so that weights are at most one; of Beckmann's all are drawn.
+    Without compensation what mirrors hide from each other is lost (`white_furnace` says how much). GGX normals are
+    drawn as they are seen from `wo`, so that weights are at most one; of Beckmann's all are drawn. With two widths the
+    compensation takes their geometric mean.
 
     References
     ----------
-    B. Walter, S. R. Marschner, H. Li, K. E. Torrance, *Microfacet models for refraction through rough surfaces*, 2007.
+    B. Walter, S. R. Marschner, H. Li, K. E. Torrance, *Microfacet models for refraction through rough surfaces*, 2007;
+    E. Turquin, *Practical multiple scattering compensation for microfacet models*, 2019.
 
     Examples
     --------
@@ -206,11 +225,23 @@ class RoughConductor(_Rough):
     distribution: Literal["ggx", "beckmann"] = option("ggx", SHAPES)
     masking: Literal["height_correlated", "separable", "schlick", "v_cavity"] = option("height_correlated", MASKINGS)
     tint: Any = color((1.0, 1.0, 1.0))
+    compensation: Literal["none", "kulla_conty", "kulla_conty_as_published", "scaled"] = option("none", COMPENSATIONS)
     _kind: ClassVar[int] = 4
 
     def _numbers(self) -> list[Any]:
-        alpha, eta, k, alpha_y, distribution, masking, tint = self._parameters()
-        return [tint, eta, k, alpha, alpha_y, distribution, masking]
+        alpha, eta, k, alpha_y, distribution, masking, tint, compensation = self._parameters()
+        plain = [tint, eta, k, alpha, alpha_y, distribution, masking]
+        if self.compensation == "none":
+            return plain
+        if self.compensation == "scaled":
+            fresnel = _normal_reflectance(np.asarray(self.eta), np.asarray(self.k))
+        else:
+            fresnel = fresnel_average(np.asarray(self.eta, np.float64), np.asarray(self.k, np.float64))
+        # Rounding may pass one.
+        return [*plain, compensation, (np.minimum(fresnel, 1.0), {"core": 3, "low": 0.0, "high": 1.0, "above": None})]
+
+    def _number(self) -> int:
+        return 4 if self.compensation == "none" else 10
 
     def _stand_in(self) -> MetallicRoughness:
         return MetallicRoughness(_metal(self), 1.0, math.sqrt(math.sqrt(self.alpha * self.alpha_y)))
@@ -269,11 +300,270 @@ class RoughDielectric(_Rough):
         return MetallicRoughness((0.0, 0.0, 0.0), 0.0, roughness, _strength(self.eta))
 
 
+@dataclass(frozen=True)
+class OrenNayar(Model):
+    """Rough diffusers, as of clay and the moon: brighter towards the light than Lambert's.
+
+    Parameters
+    ----------
+    albedo : array_like, shape (..., 3)
+        Of the facets, in [0, 1].
+    sigma : array_like
+        Roughness, in [0, 1]: the deviation of the slopes' angles in radians of the qualitative form, the parameter of
+        the energy-preserving one; 0 is Lambert's.
+    form : {"energy_preserving", "qualitative"}
+        With the light of further bounces, so that an albedo of one gives all back; or the source's short form.
+
+    Notes
+    -----
+    Directions are drawn by the cosine.
+
+    References
+    ----------
+    M. Oren, S. K. Nayar, *Generalization of Lambert's reflectance model*, 1994; J. Portsmouth, P. Kutz, S. Hill,
+    *EON: a practical energy-preserving rough diffuse BRDF*, 2025.
+
+    Examples
+    --------
+    >>> OrenNayar(0.5, 0.5, form="qualitative").eval([0, 0, 1], [0, 0, 1]).round(4)
+    array([0.1248, 0.1248, 0.1248])
+    """
+
+    albedo: Any = color((0.8, 0.8, 0.8))
+    sigma: Any = parameter(0.5, 0, 0, 1)
+    form: Literal["energy_preserving", "qualitative"] = option(
+        "energy_preserving", ("qualitative", "energy_preserving")
+    )
+    _kind: ClassVar[int] = 6
+
+    def _stand_in(self) -> MetallicRoughness:
+        return MetallicRoughness(self.albedo, specular=0.0)
+
+
+@dataclass(frozen=True)
+class Phong(Model):
+    """A highlight by the power of the cosine between the mirror direction and the light, over a diffuser.
+
+    Parameters
+    ----------
+    diffuse, specular : array_like, shape (..., 3)
+        Albedos of the diffuser and of the highlight, in [0, 1]; together at most one if energy is to be kept.
+    exponent : array_like
+        At least 0; the larger, the smaller the highlight.
+    normalized : bool
+        The highlight gives back `specular` of light along the normal, and less of other light; False is the classic
+        shading, ``specular * cos ** exponent`` in place of value times cosine.
+
+    Notes
+    -----
+    The classic form is not reciprocal, and near grazing gives back more than came: a look.
+
+    References
+    ----------
+    B. T. Phong, *Illumination for computer generated pictures*, 1975; E. P. Lafortune, Y. D. Willems, *Using the
+    modified Phong reflectance model for physically based rendering*, 1994.
+
+    Examples
+    --------
+    >>> Phong(0.0, 1.0, 10.0).eval([0, 0, 1], [0, 0, 1]).round(4)
+    array([1.9099, 1.9099, 1.9099])
+    """
+
+    diffuse: Any = color((0.5, 0.5, 0.5))
+    specular: Any = color((0.5, 0.5, 0.5))
+    exponent: Any = parameter(20.0, 0, 0.0)
+    normalized: bool = True
+    _kind: ClassVar[int] = 7
+    _blinn: ClassVar[bool] = False
+
+    def __post_init__(self) -> None:
+        if not isinstance(self.normalized, bool):
+            raise TypeError(f"normalized: expected a bool, got {type(self.normalized).__name__}")
+        super().__post_init__()
+
+    def _numbers(self) -> list[Any]:
+        return [*self._parameters(), _flag(self.normalized), _flag(self._blinn)]
+
+    def _stand_in(self) -> MetallicRoughness:
+        # Slopes as far spread: alpha² = 2 / (n + 2), and four times n for Blinn's half angles.
+        n = self.exponent if self._blinn else 4 * self.exponent
+        return MetallicRoughness(self.diffuse, 0.0, (2 / (n + 2)) ** 0.25, min(1.0, max(self.specular)))
+
+
+@dataclass(frozen=True)
+class BlinnPhong(Phong):
+    """As `Phong`, by the cosine between the half vector and the normal.
+
+    The highlight stretches towards grazing, as that of microscopic mirrors does. About four times Phong's exponent
+    gives a highlight of its size.
+
+    Parameters
+    ----------
+    diffuse, specular, exponent, normalized
+        As of `Phong`.
+
+    References
+    ----------
+    J. F. Blinn, *Models of light reflection for computer synthesized pictures*, 1977; F. Giesen, *Phong and Blinn-Phong
+    normalization factors*, 2009.
+
+    Examples
+    --------
+    >>> BlinnPhong(0.0, 1.0, 10.0).eval([0, 0, 1], [0, 0, 1]).round(4)
+    array([0.6664, 0.6664, 0.6664])
+    """
+
+    _blinn: ClassVar[bool] = True
+
+
+@dataclass(frozen=True)
+class Plastic(Model):
+    """A diffuser under a clear, smooth coat.
+
+    Parameters
+    ----------
+    diffuse : array_like, shape (..., 3)
+        Albedo of the diffuser, in [0, 1].
+    eta : array_like
+        Index of the coat over that outside, at least 1.
+    nonlinear : bool
+        Colour every bounce between diffuser and coat, which makes colours deeper.
+
+    Notes
+    -----
+    The mirror direction is a specular draw; `eval` and `pdf` are of the diffuser under the coat.
+
+    References
+    ----------
+    W. Jakob, *Mitsuba renderer*, 2010: `plastic`.
+
+    Examples
+    --------
+    >>> Plastic(1.0, nonlinear=True).eval([0, 0, 1], [0, 0, 1]).round(4)
+    array([0.323, 0.323, 0.323])
+    """
+
+    diffuse: Any = color((0.5, 0.5, 0.5))
+    eta: Any = parameter(1.5, 0, 1.0)
+    nonlinear: bool = False
+    _kind: ClassVar[int] = 8
+
+    def __post_init__(self) -> None:
+        if not isinstance(self.nonlinear, bool):
+            raise TypeError(f"nonlinear: expected a bool, got {type(self.nonlinear).__name__}")
+        super().__post_init__()
+
+    def _numbers(self) -> list[Any]:
+        inner = fresnel_average(1 / np.asarray(self.eta, np.float64))
+        return [*self._parameters(), (inner, _UNIT), _flag(self.nonlinear)]
+
+    def _stand_in(self) -> MetallicRoughness:
+        return MetallicRoughness(self.diffuse, 0.0, 0.0, _strength(self.eta))
+
+
+@dataclass(frozen=True)
+class SpecularGlossiness(Model):
+    """The other workflow of real-time materials (see `to_metallic_roughness`).
+
+    Parameters
+    ----------
+    diffuse : array_like, shape (..., 3)
+        Albedo of what mirrors let in, in [0, 1].
+    specular : array_like, shape (..., 3)
+        Reflectance of mirrors along the normal, in [0, 1].
+    glossiness : array_like
+        One less the roughness, in [0, 1].
+
+    References
+    ----------
+    Khronos, *KHR_materials_pbrSpecularGlossiness*, 2017.
+
+    Examples
+    --------
+    >>> SpecularGlossiness(0.5, 0.04, 0.0).eval([0, 0, 1], [0, 0, 1]).round(4)
+    array([0.1499, 0.1499, 0.1499])
+    """
+
+    diffuse: Any = color((0.5, 0.5, 0.5))
+    specular: Any = color((0.04, 0.04, 0.04))
+    glossiness: Any = parameter(0.5, 0, 0, 1)
+    _kind: ClassVar[int] = 9
+    _facets: ClassVar[bool] = True
+
+    def _stand_in(self) -> MetallicRoughness:
+        base, metallic = to_metallic_roughness(self.diffuse, self.specular)
+        return MetallicRoughness(tuple(base.tolist()), float(metallic), 1 - self.glossiness)
+
+
+@dataclass(frozen=True)
+class Principled(Model):
+    """The artist's model of film: one set of parameters from cloth to car paint, metal and glass.
+
+    Parameters
+    ----------
+    base_color : array_like, shape (..., 3)
+        Linear, in [0, 1].
+    metallic, roughness, specular, specular_tint, anisotropic, sheen, sheen_tint : array_like
+        In [0, 1], as in the source. `specular` is the dielectric's strength in the form of 2012: 8 % at one.
+    clearcoat, clearcoat_gloss, subsurface, spec_trans : array_like
+        In [0, 1]. `spec_trans`, of the form of 2015, is the share of glass.
+    eta : array_like
+        Index of the body in the form of 2015, above 0.
+    form : {"2012", "2015"}
+        The BRDF of the first notes, or the BSDF of the later ones.
+
+    Notes
+    -----
+    Not strictly conservative: at grazing angles the form of 2012 gives back more than came. In that of 2015 with
+    `spec_trans` above 0, directions stand on both sides.
+
+    References
+    ----------
+    B. Burley, *Physically based shading at Disney*, 2012; B. Burley, *Extending the Disney BRDF to a BSDF with
+    integrated subsurface scattering*, 2015.
+
+    Examples
+    --------
+    >>> Principled((0.8, 0.4, 0.2), roughness=1.0).eval([0, 0, 1], [0, 0, 1]).round(4)
+    array([0.2578, 0.1305, 0.0668])
+    """
+
+    base_color: Any = color((0.8, 0.8, 0.8))
+    metallic: Any = parameter(0.0, 0, 0, 1)
+    roughness: Any = parameter(0.5, 0, 0, 1)
+    specular: Any = parameter(0.5, 0, 0, 1)
+    specular_tint: Any = parameter(0.0, 0, 0, 1)
+    anisotropic: Any = parameter(0.0, 0, 0, 1)
+    sheen: Any = parameter(0.0, 0, 0, 1)
+    sheen_tint: Any = parameter(0.5, 0, 0, 1)
+    clearcoat: Any = parameter(0.0, 0, 0, 1)
+    clearcoat_gloss: Any = parameter(1.0, 0, 0, 1)
+    subsurface: Any = parameter(0.0, 0, 0, 1)
+    spec_trans: Any = parameter(0.0, 0, 0, 1)
+    eta: Any = parameter(1.5, 0, above=0.0)
+    form: Literal["2012", "2015"] = option("2012", ("2012", "2015"))
+    _kind: ClassVar[int] = 11
+    _facets: ClassVar[bool] = True
+
+    def _stand_in(self) -> MetallicRoughness:
+        strength = self.specular * 2 if self.form == "2012" else _strength(self.eta)
+        return MetallicRoughness(self.base_color, self.metallic, self.roughness, min(1.0, strength))
+
+
+_UNIT = {"core": 0, "low": 0.0, "high": 1.0, "above": None}
+
+
+def _flag(on: bool) -> tuple[float, Any]:
+    return float(on), _UNIT
+
+
 def _metal(m: Any) -> tuple[float, ...]:
     """Reflectance at normal incidence."""
-    return tuple(
-        t * ((e - 1) ** 2 + k * k) / ((e + 1) ** 2 + k * k) for e, k, t in zip(m.eta, m.k, m.tint, strict=True)
-    )
+    return tuple((_normal_reflectance(np.asarray(m.eta), np.asarray(m.k)) * m.tint).tolist())
+
+
+def _normal_reflectance(eta: Any, k: Any) -> Any:
+    return ((eta - 1) ** 2 + k * k) / ((eta + 1) ** 2 + k * k)
 
 
 def _strength(eta: float) -> float:

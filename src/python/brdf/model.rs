@@ -1,6 +1,6 @@
 //! Bindings of all models by kind and rows of parameters.
 
-use crate::brdf::{self, Draws, Row, Rows, WIDTH};
+use crate::brdf::{self, Draws, Row, Rows, TermColumns, WIDTH};
 use crate::python::array::{In, Out, run};
 use crate::real;
 use crate::real::Real;
@@ -101,5 +101,28 @@ pub fn model_sample(
         let (weight, pdf) = (weight.items()?, pdf.slice()?);
         let out = Draws { wi, weight, pdf, specular: specular.slice()?, eta: eta.slice()? };
         run(py, None, |watch| brdf::sample_many(watch, rows, wo, u, out))
+    })
+}
+
+/// `out`: half vector, D, F, G.
+#[pyfunction]
+pub fn model_terms(
+    py: Python<'_>,
+    table: TableTuple<'_>,
+    wi: &Bound<'_, PyAny>,
+    wo: &Bound<'_, PyAny>,
+    out: [Bound<'_, PyAny>; 4],
+) -> PyResult<()> {
+    let [half, distribution, fresnel, masking] = &out;
+    real!(half, T => {
+        let (table, wi, wo) = (Table::<T>::of(&table)?, In::<T>::of("wi", wi)?, In::<T>::of("wo", wo)?);
+        let (mut half, mut fresnel) = (Out::<T>::of("half", half)?, Out::<T>::of("fresnel", fresnel)?);
+        let mut distribution = Out::<T>::of("distribution", distribution)?;
+        let mut masking = Out::<T>::of("masking", masking)?;
+        let (wi, wo, half) = (wi.items()?, wo.items()?, half.items()?);
+        let rows = table.get(half.len())?;
+        let (fresnel, distribution) = (fresnel.items()?, distribution.slice()?);
+        let out = TermColumns { half, distribution, fresnel, masking: masking.slice()? };
+        run(py, None, |watch| brdf::terms_many(watch, rows, wi, wo, out))
     })
 }

@@ -1,0 +1,249 @@
+//! The light that microscopic mirrors throw at each other, given back.
+//!
+//! One bounce of a perfect rough mirror returns E(cos θ, alpha) of the light; the table of E is made here, once a
+//! program, by quadrature over the drawn normals, and interpolated in the cosine and the roughness √alpha. What is
+//! missing is added as a lobe of the shape (1 − E(θi)) (1 − E(θo)) / (π (1 − E_avg)), coloured by the bounces:
+//!
+//! - `Bounces`: F² E / (1 − F (1 − E)), of averages: light that has met at least two mirrors;
+//! - `AsPublished`: F E / (1 − F (1 − E)), as the slides first had it: it counts a bounce of colour too few, so metals
+//!   come out paler, and is the same at F = 1;
+//! - `Scaled`: no lobe; the single bounce times 1 + F0 (1/E(θo) − 1). Cheaper, not reciprocal, of the mirrors' own shape.
+//!
+//! C. Kulla, A. Conty, *Revisiting physically based shading at Imageworks*, 2017; S. Hill, *A multi-faceted
+//! exploration*, 2018 (the colour); E. Turquin, *Practical multiple scattering compensation for microfacet models*, 2019.
+
+use super::microfacets::{Masking, Microfacets, Shape};
+use super::model::{Draw, Model, Row, triple};
+use super::rough_conductor::RoughConductor;
+use crate::real::Real;
+use crate::sampling::cosine_hemisphere::{square_to_cosine_hemisphere, square_to_cosine_hemisphere_pdf};
+use crate::sampling::disk::Method;
+use crate::vec::Vec3;
+use std::sync::OnceLock;
+
+/// Points of the table along either axis.
+pub const SIZE: usize = 32;
+/// Cells of the quadrature by azimuth and by height of the drawn normals.
+const TURNS: usize = 32;
+const CELLS: usize = 96;
+
+/// What one bounce returns: rows of a roughness, by cosines; and the average of each row.
+pub struct Albedo {
+    pub by_cosine: [[f64; SIZE]; SIZE],
+    pub average: [f64; SIZE],
+}
+
+/// The roughness of a row and the cosine of a column: both closer where E bends.
+#[inline(always)]
+pub fn knot(i: usize) -> f64 {
+    let x = i as f64 / (SIZE - 1) as f64;
+    // From 10⁻³ on, since nothing is seen at a cosine of zero.
+    (x * x).max(1e-3)
+}
+
+fn returned(facets: &Microfacets<f64>, cos: f64) -> f64 {
+    let wo = Vec3::new((1.0 - cos * cos).max(0.0).sqrt(), 0.0, cos);
+    let mut sum = 0.0;
+    for i in 0..TURNS * CELLS {
+        // Half of the azimuths, by symmetry; points gather where directions graze, at the end of the other number.
+        let rest = 1.0 - ((i % CELLS) as f64 + 0.5) / CELLS as f64;
+        let u = [((i / CELLS) as f64 + 0.5) * 0.5 / TURNS as f64, 1.0 - rest * rest];
+        let normal = facets.sample(wo, u);
+        let wi = normal * (2.0 * wo.dot(normal)) - wo;
+        if wi.z > 0.0 && wo.dot(normal) > 0.0 {
+            let half = wi + wo;
+            let density = facets.density_over_cosine(wo, half) * 0.25;
+            sum += 2.0 * rest * facets.distribution(half) * facets.visibility(wi, wo, half) * wi.z / density;
+        }
+    }
+    sum / (TURNS * CELLS) as f64
+}
+
+impl Albedo {
+    fn build(shape: Shape, masking: Masking) -> Self {
+        let mut table = Albedo { by_cosine: [[0.0; SIZE]; SIZE], average: [0.0; SIZE] };
+        for (j, row) in table.by_cosine.iter_mut().enumerate() {
+            let alpha = knot(j);
+            let facets = Microfacets { alpha_x: alpha, alpha_y: alpha, ratio: [1.0, 1.0], shape, masking };
+            *row = std::array::from_fn(
+                #[inline(always)]
+                |i| returned(&facets, knot(i)),
+            );
+        }
+        for j in 0..SIZE {
+            let row = table.row(j as f64);
+            let nodes = super::fresnel_average::gauss_legendre();
+            table.average[j] = nodes
+                .iter()
+                .map(
+                    #[inline(always)]
+                    |&(x, w)| 2.0 * x * w * row.at(x),
+                )
+                .sum();
+        }
+        table
+    }
+
+    /// The table of a kind of facets.
+    pub fn of(shape: Shape, masking: Masking) -> &'static Self {
+        static TABLES: [OnceLock<Box<Albedo>>; 8] = [const { OnceLock::new() }; 8];
+        let number = masking as usize + 4 * (shape == Shape::Beckmann) as usize;
+        TABLES[number].get_or_init(|| Box::new(Albedo::build(shape, masking)))
+    }
+
+    #[inline(always)]
+    fn row(&self, at: f64) -> Slice<'_> {
+        let below = (at as usize).min(SIZE - 2);
+        Slice { table: self, below, share: at - below as f64 }
+    }
+
+    /// Of one width: the row between the table's own.
+    #[inline(always)]
+    pub fn width<T: Real>(&self, alpha: T) -> Slice<'_> {
+        self.row(place(alpha.to_f64()))
+    }
+}
+
+/// The place of a width or a cosine among the knots.
+#[inline(always)]
+fn place(x: f64) -> f64 {
+    let at = x.max(0.0).sqrt() * (SIZE - 1) as f64;
+    // Below the second knot the first is not at zero: straight in x.
+    if at < 1.0 { ((x - knot(0)) / (knot(1) - knot(0))).max(0.0) } else { at.min((SIZE - 1) as f64) }
+}
+
+/// E of one width, by the cosine.
+#[derive(Clone, Copy)]
+pub struct Slice<'a> {
+    table: &'a Albedo,
+    below: usize,
+    share: f64,
+}
+
+impl std::fmt::Debug for Slice<'_> {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        write!(f, "Slice({}, {})", self.below, self.share)
+    }
+}
+
+impl Slice<'_> {
+    #[inline(always)]
+    pub fn at(&self, cos: f64) -> f64 {
+        let place = place(cos);
+        let i = (place as usize).min(SIZE - 2);
+        let t = place - i as f64;
+        let (low, high) = (&self.table.by_cosine[self.below], &self.table.by_cosine[self.below + 1]);
+        let (a, b) = (low[i] + (low[i + 1] - low[i]) * t, high[i] + (high[i + 1] - high[i]) * t);
+        a + (b - a) * self.share
+    }
+    #[inline(always)]
+    pub fn average(&self) -> f64 {
+        let (a, b) = (self.table.average[self.below], self.table.average[self.below + 1]);
+        a + (b - a) * self.share
+    }
+}
+
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Form {
+    Bounces,
+    AsPublished,
+    Scaled,
+}
+
+impl Form {
+    #[inline(always)]
+    pub fn of<T: Real>(number: T) -> Self {
+        match number.to_f64() as i32 {
+            2 => Form::AsPublished,
+            3 => Form::Scaled,
+            _ => Form::Bounces,
+        }
+    }
+    /// The colour of the added lobe, of the average reflectance and the average E.
+    #[inline(always)]
+    pub fn color<T: Real>(self, fresnel: T, average: T) -> T {
+        let one = T::one();
+        let bounced = fresnel * average / (one - fresnel * (one - average));
+        if self == Form::Bounces { fresnel * bounced } else { bounced }
+    }
+}
+
+/// The added lobe of a reflectance of one: (1 − E(θi)) (1 − E(θo)) / (π (1 − E_avg)).
+#[inline(always)]
+pub fn missing<T: Real>(slice: &Slice<'_>, wi: Vec3<T>, wo: Vec3<T>) -> T {
+    let lost = 1.0 - slice.average();
+    let both = (1.0 - slice.at(wi.z.to_f64())) * (1.0 - slice.at(wo.z.to_f64()));
+    T::of(if lost > 1e-9 { both / (std::f64::consts::PI * lost) } else { 0.0 })
+}
+
+/// Rough metal that gives back the light of further bounces.
+#[derive(Clone, Copy, Debug)]
+pub struct Compensated<T> {
+    pub once: RoughConductor<T>,
+    pub form: Form,
+    pub slice: Slice<'static>,
+    /// Fresnel's average per channel, tint included; the reflectance along the normal for [`Form::Scaled`].
+    pub fresnel: Vec3<T>,
+}
+
+impl<T: Real> Compensated<T> {
+    /// The chance of drawing from the added lobe.
+    #[inline(always)]
+    fn chance(&self, wo: Vec3<T>) -> T {
+        if self.form == Form::Scaled { T::zero() } else { T::of(1.0 - self.slice.at(wo.z.to_f64())) }
+    }
+}
+
+impl<T: Real> Model<T> for Compensated<T> {
+    #[inline(always)]
+    fn of(row: &Row<T>) -> Self {
+        let once = RoughConductor::of(row);
+        let alpha = (once.facets.alpha_x * once.facets.alpha_y).sqrt();
+        let slice = Albedo::of(once.facets.shape, once.facets.masking).width(alpha);
+        let fresnel = triple(row, 14).times(once.tint);
+        Compensated { once, form: Form::of(row[13]), slice, fresnel }
+    }
+    #[inline(always)]
+    fn eval(&self, wi: Vec3<T>, wo: Vec3<T>) -> Vec3<T> {
+        if super::apart(wi, wo) {
+            return Vec3::splat(T::zero());
+        }
+        let once = self.once.value(wi, wo);
+        if self.form == Form::Scaled {
+            let more = T::of(1.0 / self.slice.at(wo.z.to_f64()) - 1.0);
+            return once.zip(
+                self.fresnel,
+                #[inline(always)]
+                |f, f0| f * (T::one() + f0 * more),
+            );
+        }
+        let average = T::of(self.slice.average());
+        let lobe = missing(&self.slice, wi, wo);
+        once + self.fresnel.map(
+            #[inline(always)]
+            |f| lobe * self.form.color(f, average),
+        )
+    }
+    #[inline(always)]
+    fn pdf(&self, wi: Vec3<T>, wo: Vec3<T>) -> T {
+        if wo.z <= T::zero() {
+            return T::zero();
+        }
+        let chance = self.chance(wo);
+        let one = T::one();
+        (one - chance) * self.once.pdf(wi, wo) + chance * square_to_cosine_hemisphere_pdf(wi)
+    }
+    #[inline(always)]
+    fn sample(&self, wo: Vec3<T>, u: [T; 3]) -> Option<Draw<T>> {
+        if !(wo.z > T::zero()) {
+            return None;
+        }
+        let wi = if u[2] < self.chance(wo) {
+            square_to_cosine_hemisphere([u[0], u[1]], Method::Concentric)
+        } else {
+            let half = self.once.facets.sample(wo, [u[0], u[1]]);
+            half * (T::of(2.0) * wo.dot(half)) - wo
+        };
+        Some(super::model::weighed(self, wi, wo, T::one()))
+    }
+}

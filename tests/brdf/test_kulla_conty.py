@@ -1,0 +1,81 @@
+"""Energy compensation: the table, the furnace, the two colours."""
+
+import importlib.util
+from pathlib import Path
+
+import numpy as np
+import pytest
+from shadelab import brdf
+
+spec = importlib.util.spec_from_file_location("brdf_common", Path(__file__).with_name("common.py"))
+common = importlib.util.module_from_spec(spec)
+spec.loader.exec_module(common)
+
+WHITE = {"eta": 1e-9, "k": 1e9}
+
+
+@pytest.mark.parametrize(("roughness", "loss"), [(0.25, 1.3), (0.5, 11.8), (0.75, 34.4), (1.0, 59.0)])
+def test_single_bounces_lose_what_is_known(roughness, loss):
+    """Cosine-averaged, in per cent; to the last digit given, plus the table's and the draws' error."""
+    model = brdf.RoughConductor(roughness**2, **WHITE)
+    assert 100 * brdf.white_furnace(model)[0] == pytest.approx(loss, abs=0.1)
+
+
+def test_along_the_normal_the_roughest_loses_most():
+    albedo = brdf.directional_albedo(brdf.RoughConductor(1.0, **WHITE), [0.0, 0.0, 1.0], 1 << 16)
+    assert 100 * (1 - albedo[0]) == pytest.approx(69.3, abs=0.05)
+
+
+@pytest.mark.parametrize("roughness", [0.1, 0.25, 0.4, 0.5, 0.75, 0.9, 1.0])
+@pytest.mark.parametrize("compensation", ["kulla_conty", "kulla_conty_as_published", "scaled"])
+def test_compensated_mirrors_give_all_back(roughness, compensation):
+    model = brdf.RoughConductor(roughness**2, **WHITE, compensation=compensation)
+    assert abs(brdf.white_furnace(model)).max() < 0.002
+
+
+@pytest.mark.parametrize("distribution", ["ggx", "beckmann"])
+def test_other_facets_are_compensated_too(distribution):
+    model = brdf.RoughConductor(
+        0.5, **WHITE, distribution=distribution, masking="separable", compensation="kulla_conty"
+    )
+    assert abs(brdf.white_furnace(model, samples=1 << 15)).max() < 0.004
+
+
+def test_the_table_holds_the_albedo():
+    table = brdf.albedo_table()
+    for row in (15, 31):
+        for column in (3, 10, 31):
+            wo = common.at(table.knots[column])
+            albedo = brdf.directional_albedo(brdf.RoughConductor(table.knots[row], **WHITE), wo, 1 << 15)[0]
+            assert table.albedo[row, column] == pytest.approx(albedo, abs=1e-3)
+
+
+def test_colours():
+    """Bounces: F²E / (1 − F(1 − E)) is the sum over two and more; what was published has a factor F less."""
+    up = [0.0, 0.0, 1.0]
+    f = np.array([0.3, 0.9, 1.0])
+    own = brdf.kulla_conty(up, up, 0.8, f, full_output=True)
+    e = own.average
+    series = sum(f ** (k + 1) * (1 - e) ** (k - 1) * e for k in range(1, 400))
+    np.testing.assert_allclose(own.color, series, rtol=1e-9)
+    first = brdf.kulla_conty(up, up, 0.8, f, color="as_published", full_output=True)
+    np.testing.assert_allclose(first.color * f, own.color, rtol=1e-12)
+    assert (first.color[:2] > own.color[:2]).all() and first.color[2] == pytest.approx(1)
+
+
+def test_the_model_is_the_sum_of_its_parts():
+    wi, wo = common.directions(100, 1), common.directions(100, 2)
+    eta, k = (0.2, 0.92, 1.1), (3.91, 2.45, 2.14)
+    whole = brdf.RoughConductor(0.6, eta, k, compensation="kulla_conty")
+    once = brdf.RoughConductor(0.6, eta, k)
+    averages = brdf.fresnel_average(np.array(eta), np.array(k))
+    lobe = np.stack([brdf.kulla_conty(wi, wo, 0.6, f) for f in averages], -1)
+    np.testing.assert_allclose(whole.eval(wi, wo), once.eval(wi, wo) + lobe, rtol=1e-12)
+    np.testing.assert_allclose(whole.eval(wi, wo), whole.eval(wo, wi), rtol=1e-12)
+
+
+@pytest.mark.parametrize("compensation", ["kulla_conty", "scaled"])
+def test_draws_follow_the_density(compensation):
+    model = brdf.RoughConductor(0.8, compensation=compensation)
+    assert common.samples_follow(model, common.at(0.6)) > 1e-4
+    assert common.total(lambda w: model.pdf(w, common.at(0.6))) == pytest.approx(1, abs=1e-3)

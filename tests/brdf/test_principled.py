@@ -1,0 +1,84 @@
+"""The artist's model: the source's listing, draws, glass."""
+
+import importlib.util
+from pathlib import Path
+
+import numpy as np
+import pytest
+from shadelab import brdf
+
+spec = importlib.util.spec_from_file_location("brdf_common", Path(__file__).with_name("common.py"))
+common = importlib.util.module_from_spec(spec)
+spec.loader.exec_module(common)
+
+PAINT = {"roughness": 0.4, "specular": 0.6, "specular_tint": 0.3, "anisotropic": 0.5, "sheen": 0.4}
+PAINT |= {"clearcoat": 0.8, "clearcoat_gloss": 0.3, "metallic": 0.3, "subsurface": 0.4}
+COLOR = (0.8, 0.4, 0.2)
+
+
+def listing(wi, wo, color, metallic, subsurface, specular, roughness, specular_tint, anisotropic, sheen, sheen_tint,
+            clearcoat, clearcoat_gloss):  # fmt: skip
+    """The formulas of the notes of 2012, one direction at a time."""
+    mix = lambda a, b, t: a * (1 - t) + b * t  # noqa: E731
+    weight = lambda c: (1 - c) ** 5  # noqa: E731
+    h = (wi + wo) / np.linalg.norm(wi + wo)
+    nl, nv, nh, lh = wi[2], wo[2], h[2], wi @ h
+    color = np.array(color)
+    tint = color / (color @ [0.3, 0.6, 0.1])
+    spec0 = mix(specular * 0.08 * mix(1, tint, specular_tint), color, metallic)
+    fd90 = 0.5 + 2 * lh * lh * roughness
+    fd = mix(1, fd90, weight(nl)) * mix(1, fd90, weight(nv))
+    fss90 = lh * lh * roughness
+    fss = mix(1, fss90, weight(nl)) * mix(1, fss90, weight(nv))
+    ss = 1.25 * (fss * (1 / (nl + nv) - 0.5) + 0.5)
+    aspect = np.sqrt(1 - anisotropic * 0.9)
+    ax, ay = max(0.001, roughness**2 / aspect), max(0.001, roughness**2 * aspect)
+    ds = 1 / (np.pi * ax * ay * ((h[0] / ax) ** 2 + (h[1] / ay) ** 2 + nh * nh) ** 2)
+    fs = mix(spec0, 1, weight(lh))
+    smith = lambda w: 1 / (w[2] + np.sqrt((w[0] * ax) ** 2 + (w[1] * ay) ** 2 + w[2] ** 2))  # noqa: E731
+    gs = smith(wi) * smith(wo)
+    a2 = mix(0.1, 0.001, clearcoat_gloss) ** 2
+    dr = (a2 - 1) / (np.pi * np.log(a2) * (1 + (a2 - 1) * nh * nh))
+    b = 0.25**2
+    coat = lambda c: 1 / (c + np.sqrt(b + c * c - b * c * c))  # noqa: E731
+    sheen_part = weight(lh) * sheen * mix(1, tint, sheen_tint)
+    body = (mix(fd, ss, subsurface) / np.pi * color + sheen_part) * (1 - metallic)
+    return body + gs * fs * ds + 0.25 * clearcoat * coat(nl) * coat(nv) * mix(0.04, 1, weight(lh)) * dr
+
+
+def test_the_form_of_2012_is_as_listed():
+    wi, wo = common.directions(200, 1), common.directions(200, 2)
+    got = brdf.Principled(COLOR, sheen_tint=0.7, **PAINT).eval(wi, wo)
+    expected = [listing(i, o, COLOR, sheen_tint=0.7, **PAINT) for i, o in zip(wi, wo, strict=True)]
+    np.testing.assert_allclose(got, expected, rtol=1e-10)
+
+
+@pytest.mark.parametrize("form", ["2012", "2015"])
+def test_reciprocity(form):
+    wi, wo = common.directions(500, 3), common.directions(500, 4)
+    model = brdf.Principled(COLOR, form=form, **PAINT)
+    np.testing.assert_allclose(model.eval(wi, wo), model.eval(wo, wi), rtol=1e-11)
+
+
+@pytest.mark.parametrize("options", [{}, PAINT, {"metallic": 1.0}, {"form": "2015"} | PAINT])
+@pytest.mark.parametrize("cosine", [0.9, 0.35])
+def test_draws_follow_the_density(options, cosine):
+    # A wide coat, since the cells do not resolve a narrow one.
+    model = brdf.Principled(COLOR, **options | {"clearcoat_gloss": 0.0})
+    assert common.samples_follow(model, common.at(cosine, 0.4), 1 << 15) > 1e-4
+
+
+@pytest.mark.parametrize("cosine", [0.9, 0.4, -0.8])
+def test_draws_of_glass_follow_the_density(cosine):
+    model = brdf.Principled(COLOR, roughness=0.6, spec_trans=0.7, form="2015")
+    assert common.samples_follow(model, common.at(cosine, 0.4), 1 << 15) > 1e-4
+
+
+def test_all_glass_is_rough_glass_with_a_tint():
+    wi, wo = common.both_sides(500, 5), common.both_sides(500, 7)
+    cross = wi[:, 2] * wo[:, 2] < 0
+    model = brdf.Principled(COLOR, roughness=0.5, spec_trans=1.0, form="2015")
+    glass = brdf.RoughDielectric(0.25, tint=tuple(np.sqrt(COLOR)))
+    np.testing.assert_allclose(model.eval(wi, wo)[cross], glass.eval(wi, wo)[cross], rtol=1e-12)
+    above = (wi[:, 2] > 0) & (wo[:, 2] > 0)
+    np.testing.assert_allclose(model.eval(wi, wo)[above], glass.eval(wi, wo)[above], rtol=1e-9)
