@@ -21,6 +21,17 @@ impl<T: Real> Plane<T> {
     fn shines(&self, cos_light: T) -> bool {
         cos_light > T::zero() || (self.two_sided && cos_light < T::zero())
     }
+    /// Whether the side towards `from` radiates.
+    #[inline(always)]
+    pub fn shines_to(&self, from: Vec3<T>) -> bool {
+        self.shines((from - self.point).dot(self.normal))
+    }
+    /// Where the direction `wi` from `from` meets the plane, with a density.
+    #[inline(always)]
+    pub fn along(&self, from: Vec3<T>, wi: Vec3<T>, pdf: T) -> Option<Sighting<T>> {
+        let distance = (self.point - from).dot(self.normal) / wi.dot(self.normal);
+        (distance > T::zero() && pdf > T::zero()).then_some(Sighting { wi, distance, pdf })
+    }
     /// A point of the light seen from `from`, if it shines there.
     #[inline(always)]
     pub fn sight(&self, from: Vec3<T>, at: Vec3<T>) -> Option<Sighting<T>> {

@@ -3,6 +3,8 @@
 //! - [`sample`]: points on lights as seen from elsewhere, their densities, rays that meet them
 //! - [`polygon`]: light from a polygon in closed form: solid angle, irradiance, higher moments of the cosine
 //! - [`irradiance`]: of each light, in closed form
+//! - [`ltc`]: the mirrors' light from polygons by linearly transformed cosines, and their fit
+//! - [`solid_angle`]: of triangles, polygons, rectangles, spheres, boxes
 //! - [`tree`]: which of many lights to draw from
 //! - [`unshadowed`]: the radiance that surfaces reflect, nothing in between
 //!
@@ -13,10 +15,13 @@ pub(crate) mod circle;
 pub(crate) mod disk;
 mod flat;
 pub mod irradiance;
+pub mod ltc;
 pub mod polygon;
 pub(crate) mod polygon_light;
 pub(crate) mod rect;
+mod representative;
 pub mod sample;
+pub mod solid_angle;
 pub(crate) mod sphere;
 pub(crate) mod spot;
 pub mod tree;
@@ -113,6 +118,12 @@ impl<T: Real> Light<T> {
         !matches!(self, Light::Point { .. } | Light::Spot(_) | Light::Directional { .. })
     }
 
+    /// Whether what is seen of it has corners or a rim.
+    #[inline(always)]
+    pub fn has_outline(&self) -> bool {
+        self.has_area() && !matches!(self, Light::Ambient { .. })
+    }
+
     /// W/(m² sr) of an area light; zero of a punctual one.
     #[inline(always)]
     pub fn radiance(&self) -> Vec3<T> {
@@ -151,6 +162,28 @@ impl<T: Real> Light<T> {
             Light::Ambient { .. } => Some(everywhere(wi)),
             _ => None,
         }
+    }
+
+    /// [`Light::sight`] evenly over the solid angle where there is a map: rectangles, polygons, spheres, ambient light.
+    #[inline(always)]
+    pub fn sight_evenly(&self, from: Vec3<T>, u: [T; 2]) -> Option<Sighting<T>> {
+        match self {
+            Light::Rect(l) => l.sample_evenly(from, u),
+            Light::Polygon(l) => l.sample_evenly(from, u),
+            _ => self.sight(from, u),
+        }
+    }
+
+    /// [`Light::meet`] with the density of [`Light::sight_evenly`].
+    #[inline(always)]
+    pub fn meet_evenly(&self, from: Vec3<T>, wi: Vec3<T>) -> Option<Sighting<T>> {
+        let met = self.meet(from, wi)?;
+        let solid_angle = match self {
+            Light::Rect(l) => l.solid_angle(from),
+            Light::Polygon(l) => l.solid_angle(from),
+            _ => return Some(met),
+        };
+        Some(Sighting { pdf: T::one() / solid_angle, ..met })
     }
 
     /// The density of [`Light::sight`] per solid angle, zero where a ray misses.

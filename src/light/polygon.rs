@@ -71,6 +71,44 @@ impl Walk {
     }
 }
 
+/// The moment of order 1 alone: [`moments`] for irradiance.
+#[inline(always)]
+pub fn irradiance(corners: &[Vec3<f64>]) -> f64 {
+    let mut sum = 0.0;
+    let (mut first, mut last) = (None, Vec3::splat(0.0));
+    let mut to = |corner: Vec3<f64>, close: bool| {
+        let unit = if close { corner } else { corner.normalize() };
+        if first.is_none() {
+            first = Some(unit);
+        } else {
+            let normal = last.cross(unit);
+            let sine = normal.length();
+            if sine > 0.0 {
+                sum -= normal.z * (math::atan2(sine, last.dot(unit)) / sine);
+            }
+        }
+        last = unit;
+        first.unwrap_or(unit)
+    };
+    let mut before = corners[corners.len() - 1];
+    let mut start = None;
+    for &corner in corners {
+        if (before.z > 0.0) != (corner.z > 0.0) {
+            let mut crossing = before + (corner - before) * (before.z / (before.z - corner.z));
+            crossing.z = 0.0;
+            start = Some(to(crossing, false));
+        }
+        if corner.z > 0.0 {
+            start = Some(to(corner, false));
+        }
+        before = corner;
+    }
+    if let Some(start) = start {
+        to(start, true);
+    }
+    0.5 * sum
+}
+
 /// Moments of orders 0 … 6 of a polygon whose corners are given from the point, the normal being z. Positive for a
 /// polygon that is counter-clockwise as seen from the point.
 pub fn moments(corners: &[Vec3<f64>]) -> Moments {

@@ -6,6 +6,7 @@
 use super::Sighting;
 use super::flat::Plane;
 use crate::real::Real;
+use crate::sampling::spherical_triangle::SphericalTriangle;
 use crate::sampling::triangle::{Method, square_to_triangle};
 use crate::vec::Vec3;
 use std::sync::Arc;
@@ -90,6 +91,36 @@ impl<T: Real> PolygonLight<T> {
         let start = if k == 0 { T::zero() } else { self.triangles[k - 1].1 };
         let [v, w] = square_to_triangle([((at - start) / (end - start)).clamp01(), u[1]], Method::Fold);
         self.plane.sight(from, a * (T::one() - v - w) + b * v + c * w)
+    }
+    /// Of its triangles, which do not overlap.
+    #[inline(always)]
+    pub fn solid_angle(&self, from: Vec3<T>) -> T {
+        self.seen(from).fold(T::zero(), |sum, t| sum + t.solid_angle())
+    }
+    /// The triangles that have a solid angle: not those seen edge-on.
+    #[inline(always)]
+    fn seen(&self, from: Vec3<T>) -> impl Iterator<Item = SphericalTriangle<T>> {
+        let triangles = self.triangles.iter();
+        let seen = triangles.map(move |&([a, b, c], _)| SphericalTriangle::new(a - from, b - from, c - from));
+        seen.filter(|t| t.solid_angle() > T::zero())
+    }
+    /// A direction towards it, even over its solid angle.
+    #[inline(always)]
+    pub fn sample_evenly(&self, from: Vec3<T>, u: [T; 2]) -> Option<Sighting<T>> {
+        if !self.plane.shines_to(from) {
+            return None;
+        }
+        let whole = self.solid_angle(from);
+        let (mut left, mut chosen) = (u[0] * whole, None);
+        for triangle in self.seen(from) {
+            chosen = Some((triangle, (left / triangle.solid_angle()).clamp01()));
+            if left < triangle.solid_angle() {
+                break;
+            }
+            left -= triangle.solid_angle();
+        }
+        let (triangle, v) = chosen?;
+        self.plane.along(from, triangle.sample([v, u[1]]), T::one() / whole)
     }
     #[inline(always)]
     pub fn meet(&self, from: Vec3<T>, wi: Vec3<T>) -> Option<Sighting<T>> {

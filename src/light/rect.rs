@@ -8,6 +8,7 @@
 pub use super::Sighting;
 use super::flat::Plane;
 use crate::real::Real;
+use crate::sampling::spherical_rectangle::SphericalRectangle;
 use crate::vec::Vec3;
 
 #[derive(Clone, Copy, Debug)]
@@ -57,6 +58,19 @@ impl<T: Real> Rect<T> {
     #[inline(always)]
     pub fn sample(&self, from: Vec3<T>, u: [T; 2]) -> Option<Sighting<T>> {
         self.plane().sight(from, self.point(u))
+    }
+    /// A direction towards it, even over its solid angle.
+    #[inline(always)]
+    pub fn sample_evenly(&self, from: Vec3<T>, u: [T; 2]) -> Option<Sighting<T>> {
+        if !self.plane().shines_to(from) {
+            return None;
+        }
+        let seen = SphericalRectangle::new(self.center - from, self.edge_u, self.edge_v);
+        self.plane().along(from, seen.sample(u), T::one() / seen.solid_angle())
+    }
+    #[inline(always)]
+    pub fn solid_angle(&self, from: Vec3<T>) -> T {
+        SphericalRectangle::new(self.center - from, self.edge_u, self.edge_v).solid_angle()
     }
     /// Where a ray with unit direction meets the shining side, beyond `from` itself.
     #[inline(always)]

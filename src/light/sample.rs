@@ -1,7 +1,8 @@
 //! Directions towards area lights, drawn from the unit square, with their densities per solid angle.
 //!
 //! Flat lights draw points evenly over their area: the density d² / (A cos θ), θ at the light, grows without bound
-//! where they are seen edge-on, and with it falls what a sample carries. Spheres draw evenly over the cone in which they
+//! where they are seen edge-on, and with it falls what a sample carries. Rectangles and polygons may draw evenly over
+//! their solid angle instead, so that every sample carries the same; it costs more. Spheres draw evenly over the cone in which they
 //! are seen, ambient light over all directions.
 //!
 //! P. Shirley, C. Wang, K. Zimmerman, *Monte Carlo techniques for direct lighting calculations*, 1996.
@@ -23,10 +24,11 @@ pub(super) fn anywhere<T: Real>(u: [T; 2]) -> Vec3<T> {
     Vec3::new(r * cos, r * sin, z)
 }
 
-/// [`Light::sight`] over arrays of equal length: directions, distances and densities; zeros where nothing shines.
+/// [`Light::sight`], or [`Light::sight_evenly`], over arrays of equal length: directions, distances and densities; zeros where nothing shines.
 pub fn light_sample_many<T: Real>(
     watch: &mut dyn Watch,
     light: &Light<T>,
+    evenly: bool,
     points: &[[T; 3]],
     u: &[[T; 2]],
     wi: &mut [[T; 3]],
@@ -38,7 +40,7 @@ pub fn light_sample_many<T: Real>(
             for i in 0..points.len() {
                 let from = Vec3::from(points[i]);
                 let nan = from.dot(Vec3::splat(T::zero())) + (u[i][0] + u[i][1]) * T::zero();
-                (wi[i], distance[i], pdf[i]) = match light.sight(from, u[i]) {
+                (wi[i], distance[i], pdf[i]) = match if evenly { light.sight_evenly(from, u[i]) } else { light.sight(from, u[i]) } {
                     Some(s) if !nan.is_nan() => (s.wi.to_array(), s.distance, s.pdf),
                     _ => ([nan; 3], nan, nan),
                 };
@@ -51,6 +53,7 @@ pub fn light_sample_many<T: Real>(
 pub fn light_pdf_many<T: Real>(
     watch: &mut dyn Watch,
     light: &Light<T>,
+    evenly: bool,
     points: &[[T; 3]],
     wi: &[[T; 3]],
     pdf: &mut [T],
@@ -60,7 +63,8 @@ pub fn light_pdf_many<T: Real>(
             for i in 0..points.len() {
                 let (from, w) = (Vec3::from(points[i]), Vec3::from(wi[i]));
                 let nan = (from + w).dot(Vec3::splat(T::zero()));
-                pdf[i] = nan + light.pdf(from, w);
+                let met = if evenly { light.meet_evenly(from, w) } else { light.meet(from, w) };
+                pdf[i] = met.map_or(nan, |s| s.pdf + nan);
             }
         })
     })

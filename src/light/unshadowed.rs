@@ -1,19 +1,21 @@
 //! The radiance that surfaces reflect from lights with nothing in between: the first factor of real-time direct light.
 //!
 //! Punctual lights, and the diffuse part of area lights with its Fresnel factor, are in closed form (the factor is a
-//! polynomial of the cosine: see [`super::polygon`]). The mirrors' part of an area light is an average of `samples` points
-//! of the light and, unless the lobe is dim beside it, as many directions of the lobe (balance heuristic); its error falls
+//! polynomial of the cosine: see [`super::polygon`]). The mirrors' part of an area light is that of transformed cosines
+//! ([`super::ltc`]), without noise, or an average of `samples` points of the light and, unless the lobe is dim beside it, as many directions of the lobe (balance heuristic); its error falls
 //! faster than 1/√samples, since both are scrambled Sobol' points, a scramble of its own for every receiver.
 //!
 //! E. Veach, L. Guibas, *Optimally combining sampling techniques for Monte Carlo rendering*, 1995.
 
 use super::Light;
 use super::irradiance::moments;
+use super::ltc;
+use super::representative::representative;
 use crate::brdf::ggx;
 use crate::brdf::metallic_roughness::{Lobes, Materials};
 use crate::dispatch;
 use crate::parallel::{self, Interrupted, Watch};
-use crate::real::Real;
+use crate::real::{Lanes, Real};
 use crate::sampling::sobol::{Scramble, columns, sobol};
 use crate::transform::orthonormal_basis::Frame;
 use crate::vec::Vec3;
@@ -68,6 +70,24 @@ impl<T: Real> Receivers<'_, T> {
     }
 }
 
+/// How the mirrors' part of area lights is found.
+#[derive(Clone, Copy)]
+pub enum Mirrors<'a> {
+    /// See [`digits`].
+    Sampled { digits: &'a [[u32; 3]], seed: u64 },
+    /// By transformed cosines, and a few samples of lights without an outline.
+    Transformed,
+    /// By one point of each light, and a few samples of polygons and lights without an outline.
+    Representative,
+}
+
+/// What a thread works with.
+struct Desk {
+    corners: Vec<Vec3<f64>>,
+    scratch: Vec<Vec3<f64>>,
+    few: Vec<[u32; 3]>,
+}
+
 /// Sobol' points before scrambling, in three dimensions: computed once, scrambled for every receiver.
 pub fn digits(start: u32, count: u32) -> Vec<[u32; 3]> {
     let table = columns();
@@ -77,9 +97,17 @@ pub fn digits(start: u32, count: u32) -> Vec<[u32; 3]> {
 impl<T: Real> Receiver<T> {
     /// Radiance towards the eye from one light.
     #[inline(always)]
-    pub fn unshadowed(&self, light: &Light<T>, stream: u64, seed: u64, digits: &[[u32; 3]]) -> Vec3<T> {
+    fn unshadowed(&self, light: &Light<T>, stream: u64, mirrors: Mirrors<'_>, desk: &mut Desk) -> Vec3<T> {
         if light.has_area() {
-            self.diffuse(light) + self.mirrored(light, stream, seed, digits)
+            let mirrored = match mirrors {
+                Mirrors::Transformed if light.has_outline() => self.transformed(light, desk),
+                Mirrors::Representative if light.has_outline() && !matches!(light, Light::Polygon(_)) => {
+                    self.represented(light)
+                }
+                Mirrors::Transformed | Mirrors::Representative => self.mirrored(light, stream, 0, &desk.few),
+                Mirrors::Sampled { digits, seed } => self.mirrored(light, stream, seed, digits),
+            };
+            self.diffuse(light) + mirrored
         } else {
             self.beam(light).map_or(Vec3::splat(T::zero()), |(radiance, ..)| radiance)
         }
@@ -120,6 +148,45 @@ impl<T: Real> Receiver<T> {
         !light.sight(self.point, [half, half]).is_some_and(|s| peak < T::of(0.25) * s.pdf)
     }
 
+    /// The mirrors' part of a light with an outline, by transformed cosines.
+    #[inline(always)]
+    fn transformed(&self, light: &Light<T>, desk: &mut Desk) -> Vec3<T> {
+        let double = |v: Vec3<T>| v.map(T::to_f64);
+        let point = double(self.point);
+        if !self.lobes.is_specular()
+            || self.wo.z <= T::zero()
+            || !ltc::outline(light, point, &mut desk.corners)
+        {
+            // NaN goes on.
+            return (self.point + self.wo) * T::zero();
+        }
+        let frame = Frame { x: double(self.frame.x), y: double(self.frame.y), z: double(self.frame.z) };
+        let (wo, alpha) = (double(self.wo), self.lobes.alpha.to_f64());
+        let corners = desk.corners.iter().copied();
+        let [base, edge] = ltc::mirrored(ltc::shipped(), corners, &frame, wo, alpha, &mut desk.scratch)
+            .map(|x| T::of(Lanes::max(x, 0.0)));
+        self.lobes.f0.map(|f0| f0 * base + (self.lobes.f90 - f0) * edge).times(light.radiance())
+    }
+
+    /// The mirrors' part, from one point that stands for the light.
+    #[inline(always)]
+    fn represented(&self, light: &Light<T>) -> Vec3<T> {
+        let none = (self.point + self.wo) * T::zero();
+        if !self.lobes.is_specular() || self.wo.z <= T::zero() {
+            return none;
+        }
+        let mirror = self.frame.world(Vec3::new(-self.wo.x, -self.wo.y, self.wo.z));
+        let Some(point) = representative(light, self.point, mirror) else { return none };
+        let wi = self.frame.local(point.wi);
+        if !(wi.z > T::zero()) {
+            return none;
+        }
+        let alpha = self.lobes.alpha;
+        let share = alpha / Lanes::min(alpha + point.wider, T::one());
+        let factor = share * share * point.solid_angle * wi.z;
+        self.lobes.specular(wi, self.wo).times(light.radiance()) * factor
+    }
+
     /// The mirrors' part, by sampling the light and the lobe.
     #[inline(always)]
     fn mirrored(&self, light: &Light<T>, stream: u64, seed: u64, digits: &[[u32; 3]]) -> Vec3<T> {
@@ -158,21 +225,21 @@ pub fn unshadowed_many<T: Real>(
     watch: &mut dyn Watch,
     receivers: &Receivers<'_, T>,
     lights: &[Light<T>],
-    samples: u32,
-    seed: u64,
+    mirrors: Mirrors<'_>,
     out: &mut [[T; 3]],
 ) -> Result<(), Interrupted> {
-    let digits = digits(0, samples);
+    let samples = if let Mirrors::Sampled { digits, .. } = mirrors { digits.len() } else { 0 };
     // About a microsecond for every light and ten samples.
-    let piece = (4096 / (1 + lights.len() * (1 + samples as usize / 16))).max(64);
+    let piece = (4096 / (1 + lights.len() * (1 + samples / 16))).max(64);
     parallel::for_each(watch, out, piece, |first, out| {
+        let mut desk = Desk { corners: Vec::new(), scratch: Vec::new(), few: digits(0, 16) };
         dispatch!(_s => {
             for (i, out) in (first..).zip(out.iter_mut()) {
                 *out = receivers.at(i).map_or([T::zero(); 3], |r| {
                     let mut sum = Vec3::splat(T::zero());
                     for (k, light) in lights.iter().enumerate() {
                         let stream = (k as u64) << 40 | i as u64;
-                        sum = sum + r.unshadowed(light, stream, seed, &digits);
+                        sum = sum + r.unshadowed(light, stream, mirrors, &mut desk);
                     }
                     sum.to_array()
                 });

@@ -32,14 +32,15 @@ def test_samples_lie_on_the_rectangle_and_have_their_density(dtype):
 
 
 @pytest.mark.parametrize("dtype", FLOATS)
+@pytest.mark.parametrize("method", ["area", "solid_angle"])
 @pytest.mark.parametrize("light", AREAS, ids=IDS)
-def test_draws_have_the_density_that_is_asked_for(light, dtype):
+def test_draws_have_the_density_that_is_asked_for(light, method, dtype):
     points = np.random.default_rng(1).uniform(-1, 1, (2000, 3)).astype(dtype)
     u = (0.001 + 0.998 * sl.sampling.sobol(2000, 2)).astype(dtype)
-    wi, _, pdf = sl.light.light_sample(light, points, u)
+    wi, _, pdf = sl.light.light_sample(light, points, u, method=method)
     seen = pdf > 0
     assert seen.any() and np.array_equal(seen, np.linalg.norm(wi, axis=-1) > 0.5)
-    again = sl.light.light_pdf(light, points, wi)[seen]
+    again = sl.light.light_pdf(light, points, wi, method=method)[seen]
     eps = np.finfo(dtype).eps
     found = again > 0
     assert found.mean() > 0.999  # the rim of a cone is hit or missed by rounding
@@ -97,11 +98,12 @@ def test_draws_follow_the_density(light):
     assert result.pvalue > 0.001 / 4
 
 
+@pytest.mark.parametrize("method", ["area", "solid_angle"])
 @pytest.mark.parametrize("light", AREAS, ids=IDS)
-def test_estimates_the_irradiance(light):
+def test_estimates_the_irradiance(light, method):
     u = sl.sampling.sobol(1 << 15, 2)
     point, normal = np.array([0.2, 0.1, -0.3]), np.array([0.0, 0.6, 0.8])
-    wi, _, pdf = sl.light.light_sample(light, point, u)
+    wi, _, pdf = sl.light.light_sample(light, point, u, method=method)
     cosine = np.divide(np.maximum(wi @ normal, 0), pdf, out=np.zeros(len(u)), where=pdf > 0)
     exact = sl.light.irradiance(light, point, normal)
     # Scrambled points at n = 2^15: far below 1e-4 on smooth integrands, 1e-3 with the horizon's kink.
@@ -151,3 +153,12 @@ def test_bad_lights_are_refused_by_name():
         light.light_pdf(light.PointLight((0, 0, 0)), [0.0, 0, 0], [0.0, 1, 0])
     with pytest.raises(AttributeError):
         RECT.area = 3
+
+
+@pytest.mark.parametrize("light", [RECT, NOTCH], ids=["rectangle", "polygon"])
+def test_over_the_solid_angle_every_direction_has_one_density(light):
+    point = [0.1, 1.7, 0.3]
+    wi, _, pdf = sl.light.light_sample(light, point, sl.sampling.sobol(1 << 10, 2), method="solid_angle")
+    whole = sl.light.polygon_moments(light.corners, point, [0.0, 1, 0])[0]
+    assert np.allclose(pdf, 1 / whole, rtol=1e-12)
+    assert (sl.light.light_pdf(light, point, wi, method="solid_angle") > 0).all()

@@ -17,14 +17,14 @@ def lights(seed=1, count=40):
         at, color = rng.uniform(-3, 3, 3), rng.gamma(0.5, 2.0, 3)
         u, v = np.linalg.qr(rng.normal(size=(3, 2)))[0].T * rng.uniform(0.1, 1, 2)[:, None]
         kinds = (
-            lambda: L.PointLight(at, color),
-            lambda: L.SpotLight(at, u, color, 0.2, 0.7),
-            lambda: L.RectLight(at, u, v, color, two_sided=bool(rng.integers(2))),
-            lambda: L.DiskLight(at, u, rng.uniform(0.1, 1), color),
-            lambda: L.SphereLight(at, rng.uniform(0.05, 0.5), color),
-            lambda: L.PolygonLight([at, at + u, at + v], color),
+            L.PointLight(at, color),
+            L.SpotLight(at, u, color, 0.2, 0.7),
+            L.RectLight(at, u, v, color, two_sided=bool(rng.integers(2))),
+            L.DiskLight(at, u, rng.uniform(0.1, 1), color),
+            L.SphereLight(at, rng.uniform(0.05, 0.5), color),
+            L.PolygonLight([at, at + u, at + v], color),
         )
-        made.append(kinds[i % len(kinds)]())
+        made.append(kinds[i % len(kinds)])
     return made
 
 

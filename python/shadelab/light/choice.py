@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -45,9 +45,9 @@ class LightSelection:
 
     Notes
     -----
-    The tree never draws a light that turns away from the point, that lies wholly below the horizon of a given normal, or
-    that has no power; those without a place are each as likely as all others together. Its cost grows with the logarithm
-    of the number of lights.
+    The tree never draws a light that turns away from the point, that lies wholly below the horizon of a given normal,
+    or that has no power; those without a place are each as likely as all others together. Its cost grows with the
+    logarithm of the number of lights.
 
     References
     ----------
@@ -127,8 +127,8 @@ class LightSelection:
         return chance
 
     def _flat(
-        self, points: ArrayLike, normals: ArrayLike | None, dtype: np.dtype, name: str, last: NDArray
-    ) -> tuple[tuple[int, ...], list[NDArray]]:
+        self, points: ArrayLike, normals: ArrayLike | None, dtype: np.dtype[Any], name: str, last: NDArray[Any]
+    ) -> tuple[tuple[int, ...], list[NDArray[Any]]]:
         core = {"points": (_arrays.vectors("points", points, 3, dtype), 1)}
         given = np.zeros(3, dtype) if normals is None else normals
         core["normals"] = (_arrays.vectors("normals", given, 3, dtype), 1)

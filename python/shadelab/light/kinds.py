@@ -344,7 +344,7 @@ class PolygonLight:
     ((0.0, -1.0, 0.0), 0.5)
     """
 
-    corners: tuple[Vector, ...]
+    corners: Any
     radiance: Vector = (1.0, 1.0, 1.0)
     two_sided: bool = False
 

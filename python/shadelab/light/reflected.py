@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
-from typing import Any, NamedTuple
+from typing import Any, Literal, NamedTuple
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -82,6 +82,7 @@ def unshadowed(
     wo: ArrayLike | None = None,
     eye: ArrayLike | None = None,
     material_ids: ArrayLike | None = None,
+    method: Literal["sampling", "ltc", "representative_point"] = "sampling",
     samples: int = 16,
     seed: int = 0,
     out: Floats | None = None,
@@ -105,6 +106,10 @@ def unshadowed(
         The eye's position.
     material_ids : array_like of int, shape (...), optional
         Rows of the table; a negative one marks no surface, whose radiance is zero.
+    method : {"sampling", "ltc", "representative_point"}
+        How the mirrors' part of area lights is found: an average of samples; linearly transformed cosines (see
+        `shadelab.light.ltc`), without noise; or one point of the light nearest to the mirror direction, under a wider
+        lobe, the cheapest and farthest from the truth.
     samples : int
         Points of each area light and directions of each lobe that the mirrors' part is averaged over; 0 leaves that
         part out.
@@ -137,6 +142,9 @@ def unshadowed(
     ----------
     J. Arvo, *Applications of irradiance tensors to the simulation of non-Lambertian phenomena*, 1995.
     E. Veach, L. Guibas, *Optimally combining sampling techniques for Monte Carlo rendering*, 1995.
+    E. Heitz, J. Dupuy, S. Hill, D. Neubelt, *Real-time polygonal-light shading with linearly transformed cosines*,
+    2016.
+    B. Karis, *Real shading in Unreal Engine 4*, 2013.
 
     Examples
     --------
@@ -147,9 +155,9 @@ def unshadowed(
     """
     packed = _table("lights", lights)
     r = _receivers(points, normals, wo, eye, (base_color, metallic, roughness, specular), material_ids)
-    samples = _arrays.count("samples", samples, 0, 1 << 20)
-    seed = _arrays.count("seed", seed, 0, 2**64 - 1)
+    draws = _arrays.count("samples", samples, 0, 1 << 20), _arrays.count("seed", seed, 0, 2**64 - 1)
+    how = _arrays.choice("method", method, ("sampling", "ltc", "representative_point"))
     out = _arrays.output("out", out, (*r.shape, 3), r.dtype)
     call = _arrays.progress_callback(progress, "unshadowed")
-    _kernels.unshadowed(r.arrays, r.is_eye, r.material_ids, packed, samples, seed, out.reshape(-1, 3), call)
+    _kernels.unshadowed(r.arrays, r.is_eye, r.material_ids, packed, how, draws, out.reshape(-1, 3), call)
     return out

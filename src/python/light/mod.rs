@@ -1,5 +1,7 @@
 //! Bindings of `light`.
 
+mod ltc;
+mod solid_angle;
 mod tree;
 
 use crate::brdf::metallic_roughness::Materials;
@@ -129,11 +131,15 @@ impl<'py, T: Real + Element> ReceiverArrays<'py, T> {
 
 #[pymodule]
 pub mod light {
-    #[pymodule_export]
-    use super::tree::{chance, choose, chooser};
     use super::{ReceiverArrays, ReceiverTuple, double_corners, lights, one_light};
+    #[pymodule_export]
+    use super::{
+        ltc::{ltc_fit, ltc_light, ltc_shipped},
+        solid_angle::{polygon_solid_angle, solid_angle},
+        tree::{chance, choose, chooser},
+    };
     use crate::light::{irradiance as received, polygon, sample, unshadowed as direct};
-    use crate::python::array::{In, Out, run};
+    use crate::python::array::{In, Out, run, unknown};
     use crate::real;
     use pyo3::prelude::*;
 
@@ -176,6 +182,7 @@ pub mod light {
     fn light_sample(
         py: Python<'_>,
         light: &Bound<'_, PyAny>,
+        evenly: bool,
         points: &Bound<'_, PyAny>,
         u: &Bound<'_, PyAny>,
         out: [Bound<'_, PyAny>; 3],
@@ -187,7 +194,7 @@ pub mod light {
             let (mut wi, mut distance) = (Out::<T>::of("wi", wi)?, Out::<T>::of("distance", distance)?);
             let mut pdf = Out::<T>::of("pdf", pdf)?;
             let (p, u, wi, distance, pdf) = (p.items()?, u.items()?, wi.items()?, distance.slice()?, pdf.slice()?);
-            run(py, None, |watch| sample::light_sample_many(watch, &light, p, u, wi, distance, pdf))
+            run(py, None, |watch| sample::light_sample_many(watch, &light, evenly, p, u, wi, distance, pdf))
         })
     }
 
@@ -195,6 +202,7 @@ pub mod light {
     fn light_pdf(
         py: Python<'_>,
         light: &Bound<'_, PyAny>,
+        evenly: bool,
         points: &Bound<'_, PyAny>,
         wi: &Bound<'_, PyAny>,
         out: &Bound<'_, PyAny>,
@@ -204,10 +212,11 @@ pub mod light {
             let (p, wi) = (In::<T>::of("points", points)?, In::<T>::of("wi", wi)?);
             let mut out = Out::<T>::of("out", out)?;
             let (p, wi, out) = (p.items()?, wi.items()?, out.slice()?);
-            run(py, None, |watch| sample::light_pdf_many(watch, &light, p, wi, out))
+            run(py, None, |watch| sample::light_pdf_many(watch, &light, evenly, p, wi, out))
         })
     }
 
+    /// `samples`: how many, and their seed.
     #[pyfunction]
     fn unshadowed(
         py: Python<'_>,
@@ -215,8 +224,8 @@ pub mod light {
         is_eye: bool,
         material_ids: Option<&Bound<'_, PyAny>>,
         light_table: &Bound<'_, PyAny>,
-        samples: u32,
-        seed: u64,
+        method: &str,
+        samples: (u32, u64),
         out: &Bound<'_, PyAny>,
         progress: Option<Py<PyAny>>,
     ) -> PyResult<()> {
@@ -225,7 +234,15 @@ pub mod light {
             let receivers = arrays.get()?;
             let mut out = Out::<T>::of("out", out)?;
             let out = out.items()?;
-            run(py, progress, |watch| direct::unshadowed_many(watch, &receivers, &lights, samples, seed, out))
+            let (count, seed) = samples;
+            let digits = direct::digits(0, count);
+            let mirrors = match method {
+                "sampling" => direct::Mirrors::Sampled { digits: &digits, seed },
+                "ltc" => direct::Mirrors::Transformed,
+                "representative_point" => direct::Mirrors::Representative,
+                other => return Err(unknown("method", other)),
+            };
+            run(py, progress, |watch| direct::unshadowed_many(watch, &receivers, &lights, mirrors, out))
         })
     }
 }
