@@ -450,32 +450,13 @@ def _decided(scene: Any, size: tuple[int, int], measured: tuple[str, dict[str, A
         left_out += less
     if reaching:
         count = "a light reaches" if len(reaching) == 1 else f"{len(reaching)} lights reach"
-        reason = f"{count} the scene"
-        settings: dict[str, Any] = {"lights": tuple(reaching), "samples": 16}
-        dull = _dull(scene, [lamps[i] for i in reaching])
-        if dull:
-            left_out.append(LeftOut("transformed cosines", dull))
-        else:
-            settings["mirrors"] = "ltc"
-            reason += "; an area light meets glossy surfaces, whose mirrors take transformed cosines"
-        passes.append(Pass("direct light", reason, settings))
+        passes.append(Pass("direct light", f"{count} the scene", {"lights": tuple(reaching), "samples": 16}))
     elif not lamps:
         left_out.append(LeftOut("direct light", "the scene has no lights"))
     left_out += _light_surfaces(scene, size)
     passes, left_out = _surroundings(scene, passes, left_out)
     left_out.append(LeftOut("tone map", "a matter of display: the frame stays linear"))
     return Plan(tuple(passes), tuple(left_out), size, len(lamps))
-
-
-def _dull(scene: Any, lamps: list[Any]) -> str:
-    """Why no area light meets a glossy surface; empty if one does."""
-    if not any(isinstance(lamp, light.RectLight) for lamp in lamps):
-        return "no light has an area"
-    arrays = scene.flatten(np.float32)
-    used = np.unique(arrays.material_ids)
-    if not ((arrays.specular[used] > 0) | (arrays.metallic[used] > 0)).any():
-        return "no surface is glossy: what it reflects has a closed form"
-    return ""
 
 
 def _check_scene(scene: Any) -> None:
@@ -700,7 +681,9 @@ def render(
             for i in p.settings["lights"]:
                 fraction = fractions.setdefault(i, np.ones(len(seen.points), np.float32))
                 fraction *= _above_horizon(lamps[i], seen)
-                radiance += _unshadowed(lamps[i], seen, arrays, scene.camera, p.settings, seed) * fraction[:, None]
+                radiance += (
+                    _unshadowed(lamps[i], seen, arrays, scene.camera, p.settings["samples"], seed) * fraction[:, None]
+                )
         elif kind == "ambient":
             radiance += seen.base_color * background
         elif kind == "emission":
@@ -751,7 +734,7 @@ def _split(name: str, lamps: list[Any]) -> tuple[str, int]:
     return kind, int(last)
 
 
-def _unshadowed(lamp: Any, seen: _Seen, arrays: Any, camera: Any, settings: Mapping[str, Any], seed: int) -> Floats:
+def _unshadowed(lamp: Any, seen: _Seen, arrays: Any, camera: Any, samples: int, seed: int) -> Floats:
     return light.unshadowed(
         lamp,
         seen.points,
@@ -759,10 +742,8 @@ def _unshadowed(lamp: Any, seen: _Seen, arrays: Any, camera: Any, settings: Mapp
         seen.base_color,
         arrays.metallic[seen.material],
         arrays.roughness[seen.material],
-        arrays.specular[seen.material],
         eye=np.asarray(camera.eye, np.float32),
-        method=settings.get("mirrors", "sampling"),
-        samples=settings["samples"],
+        samples=samples,
         seed=seed,
     )
 
