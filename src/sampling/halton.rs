@@ -13,6 +13,7 @@ use super::hash::{Key, mix32, permute};
 pub use super::primes::PRIMES;
 use super::sobol::Scramble;
 use crate::dispatch;
+use crate::math::exact::two_product;
 use crate::parallel::{self, Interrupted, Rows, Watch};
 use crate::real::Real;
 
@@ -35,39 +36,31 @@ fn nested_digits(base: u32) -> (u32, u64) {
     (n, power)
 }
 
-/// What stands above a digit, as a hash, and the digits so far as a whole number.
-#[derive(Clone, Copy, Debug, Default)]
-struct Prefix {
-    hash: u32,
-    number: f64,
+/// What stands above a digit, as a hash.
+#[inline(always)]
+fn root(key: Key) -> u32 {
+    key.bits() as u32 ^ (key.bits() >> 32) as u32
 }
 
-impl Prefix {
-    #[inline(always)]
-    fn new(key: Key) -> Self {
-        Prefix { hash: key.bits() as u32 ^ (key.bits() >> 32) as u32, number: 0.0 }
-    }
-    /// The next digit, permuted: a · digit + c.
-    #[inline(always)]
-    fn push(self, base: u32, reciprocal: f32, digit: u32) -> Self {
-        let (g, h) = (mix32(self.hash ^ 0x68E3_1DA4), mix32(self.hash.wrapping_add(0xB529_7A4D)));
-        let a = 1 + high_product(g, base - 1);
-        let x = a * digit + high_product(h, base);
-        // The quotient in single precision is off by one at most: products stay below 2²⁷.
-        let q = (x as i32 as f32 * reciprocal) as i32 as u32;
-        let r = x.wrapping_sub(q * base) as i32;
-        let r = if r < 0 { r + base as i32 } else { r };
-        let r = if r >= base as i32 { r - base as i32 } else { r };
-        let hash = mix32(self.hash.wrapping_add((digit + 1).wrapping_mul(0x9E37_79B9)));
-        Prefix { hash, number: self.number * f64::from(base) + f64::from(r) }
-    }
-    /// The number in [0, 1): what is below the digits is one more, uniform and turned by `beyond`.
-    #[inline(always)]
-    fn finish<T: Real>(self, scale: f64, beyond: f64) -> T {
-        let below = f64::from(mix32(self.hash)) * (1.0 / (1u64 << 32) as f64) + beyond;
-        let below = if below >= 1.0 { below - 1.0 } else { below };
-        below_one((self.number + below) * scale)
-    }
+/// The next digit permuted, a · digit + c, and the hash of what stands above the one after it.
+#[inline(always)]
+fn push(hash: u32, base: u32, reciprocal: f32, digit: u32) -> (u32, u32) {
+    let g = mix32(hash ^ 0x68E3_1DA4);
+    let a = 1 + high_product(g.wrapping_mul(0x9E37_79B1), base - 1);
+    let x = a * digit + high_product(g, base);
+    // The nearest whole quotient, by the digits beside 2²³: products stay below 2²⁷, so it is the nearest or next to it.
+    let q = (x as i32 as f32 * reciprocal + 8_388_608.0).to_bits() & 0x7F_FFFF;
+    let r = x.wrapping_sub(q.wrapping_mul(base)) as i32;
+    let r = if r < 0 { r + base as i32 } else { r };
+    (r as u32, mix32(hash.wrapping_add((digit + 1).wrapping_mul(0x9E37_79B9))))
+}
+
+/// The digits as a whole number to one in [0, 1): what is below them is one more, uniform and turned by `beyond`.
+#[inline(always)]
+fn finish<T: Real>(number: f64, hash: u32, scale: f64, beyond: f64) -> T {
+    let below = f64::from(mix32(hash)) * (1.0 / (1u64 << 32) as f64) + beyond;
+    let below = if below >= 1.0 { below - 1.0 } else { below };
+    below_one((number + below) * scale)
 }
 
 #[inline(always)]
@@ -92,45 +85,55 @@ pub fn scrambled<T: Real>(key: Key, index: u32, dimension: u32) -> T {
         return Scramble::keyed(key).fraction(index.reverse_bits());
     }
     let (n, power) = nested_digits(base);
-    let (mut prefix, mut rest, reciprocal) = (Prefix::new(key), index, 1.0 / base as f32);
+    let (mut hash, mut number, mut rest, reciprocal) = (root(key), 0.0, index, 1.0 / base as f32);
     for _ in 0..n {
-        prefix = prefix.push(base, reciprocal, rest % base);
-        rest /= base;
+        let (digit, next) = push(hash, base, reciprocal, rest % base);
+        number = number * f64::from(base) + f64::from(digit);
+        (hash, rest) = (next, rest / base);
     }
-    prefix.finish(1.0 / power as f64, 0.0)
+    finish(number, hash, 1.0 / power as f64, 0.0)
 }
 
 /// The digits of `index` mirrored at the point, the last of them the first.
-#[inline(always)]
 fn mirrored(index: u64, base: u32) -> f64 {
-    let (mut rest, mut number, mut power) = (index, 0u128, 1u128);
+    let (mut rest, b) = (index, u64::from(base));
+    if index < 1 << 50 {
+        let (mut number, mut power) = (0u64, 1u64);
+        while rest != 0 {
+            (number, power, rest) = (number * b + rest % b, power * b, rest / b);
+        }
+        return number as f64 / power as f64;
+    }
+    let (mut number, mut power) = (0u128, 1u128);
     while rest != 0 {
-        number = number * u128::from(base) + u128::from(rest % u64::from(base));
-        power *= u128::from(base);
-        rest /= u64::from(base);
+        (number, power, rest) =
+            (number * u128::from(b) + u128::from(rest % b), power * u128::from(b), rest / b);
     }
     number as f64 / power as f64
 }
 
 /// One dimension, prepared: the lowest digits of an index are looked up.
 enum Table {
-    /// The looked-up numbers as sums of two; the permutations of all positions (none: as they are); the looked-up
-    /// positions.
+    /// The looked-up numbers and what rounding took from them; for permuted digits the key of the permutations, and what zeros at each
+    /// position after those looked up and all following ones come to.
     Fixed {
-        numbers: Vec<[f64; 2]>,
-        permutations: Vec<Vec<u16>>,
-        looked_up: usize,
+        numbers: Vec<f64>,
+        lacks: Vec<f64>,
+        looked_up: u64,
+        permuted: Option<(Key, Vec<f64>)>,
     },
+    /// Hashes and digits of the looked-up prefixes; how many digits follow; the power of the base of all of them.
     Nested {
-        prefixes: Vec<Prefix>,
+        hashes: Vec<u32>,
+        numbers: Vec<f64>,
         digits: u32,
         power: u64,
     },
     Binary(Scramble),
 }
 
-/// Digits after which positions hold less than 2⁻⁶⁰.
-fn positions(base: u32) -> usize {
+/// Digits after which positions hold less than 2⁻⁶⁰, at least.
+fn positions(base: u32) -> u64 {
     let (mut n, mut power) = (0, 1u64);
     while power < 1 << 60 && power < u64::MAX / u64::from(base) {
         (n, power) = (n + 1, power * u64::from(base));
@@ -139,6 +142,7 @@ fn positions(base: u32) -> usize {
 }
 
 impl Table {
+    /// At most `limit` numbers are looked up.
     fn new(scrambling: Scrambling, key: Key, dimension: usize, limit: u64) -> Self {
         let (base, key) = (PRIMES[dimension], key.at(dimension as u64));
         let (mut looked_up, mut size) = (0, 1u64);
@@ -148,45 +152,75 @@ impl Table {
         match scrambling {
             Scrambling::Owen if base == 2 => Table::Binary(Scramble::keyed(key)),
             Scrambling::Owen => {
-                let mut prefixes = vec![Prefix::new(key)];
+                let mut prefixes = vec![(root(key), 0.0)];
                 for _ in 0..looked_up {
-                    let next = |d| prefixes.iter().map(move |p| p.push(base, 1.0 / base as f32, d));
+                    let next = |d| {
+                        prefixes.iter().map(move |&(hash, number)| {
+                            let (digit, hash) = push(hash, base, 1.0 / base as f32, d);
+                            (hash, number * f64::from(base) + f64::from(digit))
+                        })
+                    };
                     prefixes = (0..base).flat_map(next).collect();
                 }
                 let (digits, power) = nested_digits(base);
-                Table::Nested { prefixes, digits: digits - looked_up as u32, power }
+                let (hashes, numbers) = prefixes.into_iter().unzip();
+                Table::Nested { hashes, numbers, digits: digits - looked_up as u32, power }
             }
             _ => {
-                let permutation = |p| (0..base).map(|d| permute(d, base, key.at(p as u64)) as u16).collect();
-                let count = if scrambling == Scrambling::Digits { positions(base) } else { 0 };
-                let permutations: Vec<Vec<u16>> = (0..count).map(permutation).collect();
+                let permuting = scrambling == Scrambling::Digits;
                 let mut numbers = vec![0u64];
                 for p in 0..looked_up {
-                    let digit =
-                        |d: u32| permutations.get(p).map_or(u64::from(d), |m| u64::from(m[d as usize]));
-                    let next = |d| numbers.iter().map(move |x| x * u64::from(base) + digit(d));
-                    numbers = (0..base).flat_map(next).collect();
+                    let digit = |d| if permuting { permute(d, base, key.at(p)) } else { d };
+                    let digits: Vec<u64> = (0..base).map(|d| u64::from(digit(d))).collect();
+                    let next = |&d: &u64| numbers.iter().map(move |x| x * u64::from(base) + d);
+                    numbers = digits.iter().flat_map(next).collect();
                 }
-                let numbers = numbers.iter().map(|&x| quotient(x, size)).collect();
-                Table::Fixed { numbers, permutations, looked_up }
+                let (numbers, lacks) = numbers.iter().map(|&x| quotient(x, size)).unzip();
+                let permuted = permuting.then(|| {
+                    let mut zeros = vec![0.0];
+                    for p in (looked_up..positions(base)).rev() {
+                        let below = zeros[zeros.len() - 1];
+                        zeros.push((f64::from(permute(0, base, key.at(p))) + below) / f64::from(base));
+                    }
+                    zeros.reverse();
+                    (key, zeros)
+                });
+                Table::Fixed { numbers, lacks, looked_up, permuted }
             }
         }
     }
     fn size(&self) -> u64 {
         match self {
             Table::Fixed { numbers, .. } => numbers.len() as u64,
-            Table::Nested { prefixes, .. } => prefixes.len() as u64,
+            Table::Nested { numbers, .. } => numbers.len() as u64,
             Table::Binary(_) => 1 << 32,
+        }
+    }
+    /// What the digits above those looked up come to, `high` being their number.
+    fn tail(&self, base: u32, high: u64) -> f64 {
+        match self {
+            Table::Fixed { looked_up, permuted: Some((key, zeros)), .. } => {
+                let (mut rest, mut sum, mut scale, mut p) = (high, 0.0, 1.0, 0);
+                while rest != 0 && p + 1 < zeros.len() {
+                    scale /= f64::from(base);
+                    let digit = (rest % u64::from(base)) as u32;
+                    sum += scale * f64::from(permute(digit, base, key.at(looked_up + p as u64)));
+                    (rest, p) = (rest / u64::from(base), p + 1);
+                }
+                (sum + scale * zeros[p]) / self.size() as f64
+            }
+            Table::Fixed { .. } => mirrored(high, base) / self.size() as f64,
+            _ => 0.0,
         }
     }
 }
 
-/// a / b as the sum of a double and what it lacks.
-fn quotient(a: u64, b: u64) -> [f64; 2] {
-    let scale = 1.0 / (1u128 << 110) as f64;
-    let exact = (u128::from(a) << 110) / u128::from(b);
-    let high = exact as f64;
-    [high * scale, (exact as i128 - high as i128) as f64 * scale]
+/// a / b as the sum of a double and what it lacks; both are below 2⁵³.
+fn quotient(a: u64, b: u64) -> (f64, f64) {
+    let (a, b) = (a as f64, b as f64);
+    let high = a / b;
+    let (product, error) = two_product(high, b);
+    (high, ((a - product) - error) / b)
 }
 
 /// Points `start` … of the sequence, one row each. Needs start + rows ≤ 2⁶⁴ and no more columns than [`PRIMES`].
@@ -218,76 +252,105 @@ const TILE: usize = 64;
 
 #[inline(always)]
 fn body<T: Real>(first: u64, tables: &[Table], rows: Rows<'_, T>) {
-    let width = rows.width;
-    for (t, tile) in rows.data.chunks_mut(TILE * width).enumerate() {
-        let (first, count) = (first + (t * TILE) as u64, tile.len() / width);
-        for (d, table) in tables.iter().enumerate() {
-            let mut done = 0;
+    let (width, data) = (rows.width, rows.data);
+    let total = data.len() / width;
+    // The last index whose upper digits were summed, for each dimension.
+    let mut tails = vec![(u64::MAX, 0.0); width];
+    let mut start = 0;
+    while start < total {
+        let count = TILE.min(total - start);
+        for d in 0..width {
+            let (table, base) = (&tables[d], PRIMES[d]);
+            let (mut done, size) = (0, table.size());
             while done < count {
                 // A run of indices that agree in all but the digits looked up.
-                let (high, low) =
-                    ((first + done as u64) / table.size(), (first + done as u64) % table.size());
-                let n = (count - done).min((table.size() - low).min(TILE as u64) as usize);
-                let values = run(table, PRIMES[d], high, low, n);
-                for (row, &value) in tile[done * width..].chunks_exact_mut(width).zip(&values[..n]) {
-                    row[d] = value;
+                let index = first + (start + done) as u64;
+                let (high, low) = (index / size, (index % size) as usize);
+                let n = (count - done).min((size - low as u64).min(TILE as u64) as usize);
+                if tails[d].0 != high {
+                    tails[d] = (high, table.tail(base, high));
                 }
+                let column = &mut data[(start + done) * width + d..];
+                run(table, base, high, low, tails[d].1, n, width, column);
                 done += n;
             }
         }
+        start += count;
     }
 }
 
-/// `n` coordinates from index `high` · size + `low`.
+/// `n` coordinates from index `high` · size + `low`, each `width` after the last.
 #[inline(always)]
-fn run<T: Real>(table: &Table, base: u32, high: u64, low: u64, n: usize) -> [T; TILE] {
-    let mut values = [T::zero(); TILE];
+fn run<T: Real>(
+    table: &Table,
+    base: u32,
+    high: u64,
+    low: usize,
+    tail: f64,
+    n: usize,
+    width: usize,
+    out: &mut [T],
+) {
     match table {
-        Table::Fixed { numbers, permutations, looked_up } => {
-            let tail = if permutations.is_empty() {
-                mirrored(high, base)
-            } else {
-                permuted(high, base, &permutations[*looked_up..])
-            };
-            let tail = tail / table.size() as f64;
-            let numbers = &numbers[low as usize..][..n];
-            for j in 0..n.min(TILE) {
-                values[j] = below_one(numbers[j][0] + (numbers[j][1] + tail));
+        Table::Fixed { numbers, lacks, .. } => {
+            let (numbers, lacks) = (&numbers[low..low + n], &lacks[low..low + n]);
+            for j in 0..n {
+                out[j * width] = below_one(numbers[j] + (lacks[j] + tail));
             }
         }
-        Table::Nested { prefixes, digits, power } => {
-            let (mut state, mut rest) = ([Prefix::default(); TILE], high);
-            state[..n].copy_from_slice(&prefixes[low as usize..][..n]);
-            let reciprocal = 1.0 / base as f32;
-            for _ in 0..*digits {
-                let digit = (rest % u64::from(base)) as u32;
-                rest /= u64::from(base);
-                for j in 0..n.min(TILE) {
-                    state[j] = state[j].push(base, reciprocal, digit);
-                }
-            }
-            let (scale, beyond) = (1.0 / *power as f64, mirrored(rest, base));
-            for j in 0..n.min(TILE) {
-                values[j] = state[j].finish(scale, beyond);
-            }
+        Table::Nested { hashes, numbers, digits, power } => {
+            let (hashes, numbers) = (&hashes[low..low + n], &numbers[low..low + n]);
+            nested(hashes, numbers, base, high, *digits, *power, width, out);
         }
         Table::Binary(scramble) => {
             let beyond = (high as u32).reverse_bits();
-            for j in 0..n.min(TILE) {
-                values[j] = scramble.binary((low as u32).wrapping_add(j as u32), beyond);
+            for j in 0..n {
+                out[j * width] = scramble.binary((low as u32).wrapping_add(j as u32), beyond);
             }
         }
     }
-    values
 }
 
-/// [`mirrored`] with every digit permuted, zeros after the last among them.
-fn permuted(index: u64, base: u32, permutations: &[Vec<u16>]) -> f64 {
-    let (mut rest, mut number, mut scale) = (index, 0.0, 1.0);
-    for permutation in permutations {
-        scale /= f64::from(base);
-        number += scale * f64::from(permutation[(rest % u64::from(base)) as usize]);
-        rest /= u64::from(base);
+/// Up to [`TILE`] coordinates whose prefixes differ and whose upper digits are the same.
+#[inline(always)]
+fn nested<T: Real>(
+    hashes: &[u32],
+    numbers: &[f64],
+    base: u32,
+    high: u64,
+    digits: u32,
+    power: u64,
+    width: usize,
+    out: &mut [T],
+) {
+    let n = hashes.len().min(TILE);
+    // All lanes work; those without a point on zeros.
+    let (mut hash, mut number, mut group) = ([0u32; TILE], [0.0; TILE], [0u32; TILE]);
+    let lanes = n.next_multiple_of(8);
+    for j in 0..n {
+        (hash[j], number[j]) = (hashes[j], numbers[j]);
     }
-    number
+    let (mut rest, mut size, reciprocal) = (high, 1u32, 1.0 / base as f32);
+    for left in (0..digits).rev() {
+        let digit = (rest % u64::from(base)) as u32;
+        rest /= u64::from(base);
+        for j in 0..lanes {
+            let (r, next) = push(hash[j], base, reciprocal, digit);
+            group[j] = group[j] * base + r;
+            hash[j] = next;
+        }
+        size *= base;
+        // Digits are gathered as integers for as long as they fit, then added to the number.
+        if left == 0 || u64::from(size) * u64::from(base) >= 1 << 31 {
+            for j in 0..lanes {
+                number[j] = number[j] * f64::from(size) + f64::from(group[j] as i32);
+                group[j] = 0;
+            }
+            size = 1;
+        }
+    }
+    let (scale, beyond) = (1.0 / power as f64, mirrored(rest, base));
+    for j in 0..n {
+        out[j * width] = finish(number[j], hash[j], scale, beyond);
+    }
 }

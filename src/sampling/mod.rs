@@ -3,6 +3,9 @@
 //! - [`generator`]: a random number for every (seed, pixel, sample, dimension)
 //! - [`sobol`], [`halton`], [`r2`]: sequences (`joe_kuo` and `primes` hold their constants), and Owen's scrambling
 //! - [`stratified`], [`latin_hypercube`], [`multi_jittered`]: point sets of a given size
+//! - [`fibonacci_sphere`], [`vogel_disk`]: spirals
+//! - [`poisson_disk`], [`blue_noise_mask`]: points and pixels that keep their distance
+//! - [`star_discrepancy`], [`discrepancy`], [`power_spectrum`]: how even a set is
 //! - [`sampler`]: any of these for a pixel's samples, for kernels
 //! - [`disk`], [`triangle`], [`sphere`], [`hemisphere`], [`cosine_hemisphere`], [`cone`], [`spherical_triangle`],
 //!   [`spherical_rectangle`]: the unit square warped onto each, with inverses and densities
@@ -12,9 +15,12 @@
 
 pub mod alias_table;
 pub mod area_to_solid_angle;
+pub mod blue_noise_mask;
 pub mod cone;
 pub mod cosine_hemisphere;
+pub mod discrepancy;
 pub mod disk;
+pub mod fibonacci_sphere;
 pub mod generator;
 pub mod gibbs;
 pub mod halton;
@@ -24,6 +30,8 @@ mod joe_kuo;
 pub mod latin_hypercube;
 pub mod metropolis_hastings;
 pub mod multi_jittered;
+pub mod poisson_disk;
+pub mod power_spectrum;
 mod primes;
 pub mod r2;
 pub mod sampler;
@@ -31,9 +39,11 @@ pub mod sobol;
 pub mod sphere;
 pub mod spherical_rectangle;
 pub mod spherical_triangle;
+pub mod star_discrepancy;
 pub mod stratified;
 pub mod tabulated;
 pub mod triangle;
+pub mod vogel_disk;
 
 use crate::dispatch;
 use crate::parallel::{self, Interrupted, Rows, Watch};

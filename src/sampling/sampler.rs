@@ -79,7 +79,7 @@ impl Sampler {
             }
             Sampler::MultiJittered(grid) => {
                 let (key, i) = grid.set(pixel, sample, pair);
-                multi_jittered(key, i, grid.samples, grid.columns, true)
+                multi_jittered(key, i, grid.samples, grid.columns, false)
             }
             Sampler::R2 { seed } => rotated_pair(Key::new(seed, pixel).at(pair), sample),
             Sampler::Sobol { seed } => padded_pair(Key::new(seed, pixel).at(pair), sample),

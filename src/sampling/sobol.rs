@@ -61,6 +61,10 @@ pub fn sobol(index: u32, columns: &Columns) -> u32 {
     x
 }
 
+fn wide_digits(index: u64, columns: &Wide) -> u64 {
+    (0..64).filter(|k| index >> k & 1 == 1).fold(0, |x, k| x ^ columns[k])
+}
+
 /// What one dimension is scrambled by.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Scramble([u32; 4]);
@@ -168,18 +172,24 @@ fn body<T: Real>(
     let (mut aligned, mut rest) = (first - skip as u64, rows.data);
     while !rest.is_empty() {
         let (now, later) = rest.split_at_mut(rest.len().min((TILE - skip) * width));
+        let count = now.len() / width;
         for d in 0..width {
             let (high, low) = match wide {
                 Some(wide) => {
-                    let digits = (6..64).filter(|k| aligned >> k & 1 == 1);
-                    let x = digits.fold(0, |x, k| x ^ wide[d][k]);
+                    let x = wide_digits(aligned, &wide[d]);
                     ((x >> 32) as u32, x as u32)
                 }
                 None => (sobol(aligned as u32, &table[d]), 0),
             };
-            let values = tile(high, low, &table[d], scrambles.map(|s| s[d]));
-            for (row, &value) in now.chunks_exact_mut(width).zip(&values[skip..]) {
-                row[d] = value;
+            let scramble = match scrambles {
+                Some(s) => Some(s[d]),
+                None => None,
+            };
+            let values = tile(high, low, &table[d], scramble);
+            let (values, column) = (&values[skip..skip + count], &mut now[d..]);
+            // Counting by hand: an iterator's `next` would be called outside the dispatch.
+            for j in 0..count {
+                column[j * width] = values[j];
             }
         }
         (rest, skip) = (later, 0);
@@ -197,8 +207,16 @@ fn tile<T: Real>(high: u32, low: u32, columns: &Columns, scramble: Option<Scramb
         }
     }
     match scramble {
-        Some(s) => (0..TILE).for_each(|j| values[j] = s.finish(s.apply(digits[j]), low)),
-        None => (0..TILE).for_each(|j| values[j] = fraction(digits[j], low)),
+        Some(s) => {
+            for j in 0..TILE {
+                values[j] = s.finish(s.apply(digits[j]), low);
+            }
+        }
+        None => {
+            for j in 0..TILE {
+                values[j] = fraction(digits[j], low);
+            }
+        }
     }
     values
 }

@@ -87,21 +87,27 @@ def test_going_on_later_gives_the_same_points():
     assert sl.sampling.sobol(0, 3).shape == (0, 3)
 
 
-def reference(index, dimensions):
-    """Points by the definition, with SciPy's copy of the published initial numbers, as fractions of 2^64."""
+@functools.lru_cache
+def columns(dimensions):
+    """Direction numbers by the definition, from SciPy's copy of the published initial numbers, of 64 bits."""
     table = np.load(Path(scipy.__file__).parent / "stats/_sobol_direction_numbers.npz")
-    points = []
-    for d in range(dimensions):
-        polynomial, m = int(table["poly"][d]), [int(x) for x in table["vinit"][d]]
+    found = []
+    for polynomial, m in zip(*(table[k][:dimensions].tolist() for k in ("poly", "vinit")), strict=True):
         s = polynomial.bit_length() - 1
-        v = [m[k] << (63 - k) for k in range(s)] if d else [1 << (63 - k) for k in range(64)]
+        v = [m[k] << (63 - k) for k in range(s)] if found else [1 << (63 - k) for k in range(64)]
         for k in range(len(v), 64):
             x = v[k - s] ^ (v[k - s] >> s)
             for j in range(1, s):
                 x ^= v[k - j] if polynomial >> (s - j) & 1 else 0
             v.append(x)
-        points.append(functools.reduce(operator.xor, (v[k] for k in range(64) if index >> k & 1), 0))
-    return points
+        found.append(v)
+    return found
+
+
+def reference(index, dimensions):
+    """Points as fractions of 2^64."""
+    digits = [k for k in range(64) if index >> k & 1]
+    return [functools.reduce(operator.xor, (v[k] for k in digits), 0) for v in columns(dimensions)]
 
 
 @pytest.mark.parametrize("start", [2**32 - 2, 2**32 + 5, 3 * 2**40 + 77, 2**63 - 1, 2**64 - 4])

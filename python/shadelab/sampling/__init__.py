@@ -1,12 +1,14 @@
-"""Generators, sequences, and warps with their densities."""
+"""Generators, sequences and point sets, how even they are, and warps with their densities."""
 
-from . import densities, directions, generators, markov, monte_carlo, sequences, tabulated, warps
+from . import densities, directions, evenness, generators, markov, monte_carlo, sequences, sets, tabulated, warps
 from .densities import *  # noqa: F403
 from .directions import *  # noqa: F403
+from .evenness import *  # noqa: F403
 from .generators import *  # noqa: F403
 from .markov import *  # noqa: F403
 from .monte_carlo import *  # noqa: F403
 from .sequences import *  # noqa: F403
+from .sets import *  # noqa: F403
 from .tabulated import *  # noqa: F403
 from .warps import *  # noqa: F403
 from .warps import DiskMethod as DiskMethod
@@ -15,9 +17,11 @@ from .warps import TriangleMethod as TriangleMethod
 __all__: list[str] = []
 __all__ += densities.__all__
 __all__ += directions.__all__
+__all__ += evenness.__all__
 __all__ += generators.__all__
 __all__ += markov.__all__
 __all__ += monte_carlo.__all__
 __all__ += sequences.__all__
+__all__ += sets.__all__
 __all__ += tabulated.__all__
 __all__ += warps.__all__

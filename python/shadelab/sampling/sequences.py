@@ -231,7 +231,7 @@ def hammersley(
 
 
 @functools.lru_cache
-def _golden(dimensions: int) -> tuple[int, ...]:
+def golden_steps(dimensions: int) -> tuple[int, ...]:
     """⌊2¹²⁸ φ⁻¹⌋, ⌊2¹²⁸ φ⁻²⌋ … of the root φ > 1 of φ^(d+1) = φ + 1."""
     with decimal.localcontext() as context:
         # Powers up to φ^-d lose digits as d grows: φ is near 1, and each product half a unit.
@@ -315,6 +315,6 @@ def r2(
     else:
         starts = [int(_arrays.number("offset", offset, 0, below=1) * 2**64) << 64] * dimensions
     out = _arrays.output("out", out, (n, dimensions), precision(dtype))
-    halves = [[(x >> 64, x & (2**64 - 1)) for x in xs] for xs in (_golden(dimensions), starts)]
+    halves = [[(x >> 64, x & (2**64 - 1)) for x in xs] for xs in (golden_steps(dimensions), starts)]
     _kernels.r2(*halves, start, out)
     return out

@@ -1,9 +1,11 @@
 //! Bindings of `sampling`, a file for each of its faces.
 
 mod directions;
+mod evenness;
 mod generators;
 mod markov;
 mod sequences;
+mod sets;
 mod tabulated;
 mod warps;
 
@@ -19,9 +21,13 @@ pub mod sampling {
         square_to_spherical_triangle, square_to_spherical_triangle_pdf,
     };
     #[pymodule_export]
+    use super::evenness::{discrepancy, power_spectrum, star_discrepancy};
+    #[pymodule_export]
     use super::generators::{philox, sampler, sampler_names, uniform};
     #[pymodule_export]
     use super::sequences::{halton, latin_hypercube, multi_jittered, r2, sobol, stratified};
+    #[pymodule_export]
+    use super::sets::{blue_noise_mask, fibonacci_sphere, poisson_disk, vogel_disk};
     #[pymodule_export]
     const SEQUENCE_DIMENSIONS: usize = super::sequences::SEQUENCE_DIMENSIONS;
     #[pymodule_export]

@@ -113,24 +113,6 @@ def _grazing(dtype: np.dtype) -> Measurement:
 
 
 @extreme(
-    "sampling.sobol",
-    "the last points of 2^32, scrambled and not",
-    domain="start = 2^32 - 256, 256 dimensions",
-    unit="count",
-    claim=0,
-)
-def _end_of_sequence(dtype: np.dtype) -> Measurement:
-    wrong, cases = 0, 0
-    for scramble in (None, "owen"):
-        p = sampling.sobol(256, 256, scramble=scramble, start=2**32 - 256, dtype=dtype)
-        # An aligned block of 256 points has one in each 256th, in every dimension.
-        cells = np.sort(np.floor(p.astype(np.float64) * 256), axis=0)
-        wrong += int((cells != np.arange(256)[:, None]).sum()) + int(((p < 0) | (p >= 1)).sum())
-        cases += p.size
-    return Measurement(wrong, cases)
-
-
-@extreme(
     "sampling.Generator",
     "the ends of every counter",
     domain="pixel to 2^64 - 1, sample and dimension to 2^32 - 1, seeds 0 and 2^64 - 1",
