@@ -14,7 +14,7 @@ from .._kernels import sampling as _kernels
 __all__ = ["PowerSpectrum", "discrepancy", "power_spectrum", "star_discrepancy"]
 
 
-def _in_cube(points: ArrayLike) -> NDArray[np.float64]:
+def _in_cube(points: ArrayLike) -> Floats:
     """`points` in double precision, shape (n, d), refused beyond the unit cube."""
     array = _arrays.floats("points", points, np.float64)
     if array.ndim != 2 or 0 in array.shape:

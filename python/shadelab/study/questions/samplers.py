@@ -157,7 +157,11 @@ def rates(records: Any) -> dict[tuple[str, str], float]:
     for r in records:
         if r.error is not None and r.error.value > 0:
             found.setdefault((r.technique, r.scene), []).append((math.log(r.knobs["samples"]), math.log(r.error.value)))
-    return {key: float(np.polyfit(*zip(*sorted(p), strict=True), 1)[0]) for key, p in found.items() if len(p) > 1}
+    return {key: _slope(np.array(points)) for key, points in found.items() if len(points) > 1}
+
+
+def _slope(points: Array) -> float:
+    return float(np.polyfit(points[:, 0], points[:, 1], 1)[0])
 
 
 _METRIC = Metric(
