@@ -156,7 +156,7 @@ def test_runs_merge_and_variance_is_that_of_the_mean():
     whole = sl.pathtrace.path_trace(world, (24, 16), 64, seed=5)
     parts = [sl.pathtrace.path_trace(world, (24, 16), 32, seed=5, start=s) for s in (0, 32)]
     merged = parts[0].merge(parts[1])
-    assert merged.samples == 64
+    assert (merged.samples == 64).all()
     assert np.allclose(merged.radiance, whole.radiance, rtol=1e-5, atol=1e-7)
     assert np.allclose(merged.variance, whole.variance, rtol=1e-4, atol=1e-9)
     # Against the spread of independent pictures.
@@ -186,7 +186,7 @@ def test_samplers_agree_and_points_that_spread_err_less(sampler):
 def test_stops_at_the_target_error():
     coarse = sl.pathtrace.path_trace(punctual(), (24, 16), 4096, target_error=0.05)
     fine = sl.pathtrace.path_trace(punctual(), (24, 16), 4096, target_error=0.01)
-    assert coarse.samples < fine.samples < 4096
+    assert coarse.samples.mean() < fine.samples.mean() < 4096 and coarse.samples.min() >= 32
     assert np.sqrt(fine.variance.mean()) <= 0.01 * fine.radiance.mean()
 
 
@@ -214,7 +214,7 @@ def test_a_bvh_of_other_vertices_is_refused():
     ball, other = (scene.Scene(m.astype(np.float32)) for m in (mesh.icosphere(1), mesh.icosphere(1, radius=2.0)))
     arrays, wrong = ball.flatten(), other.flatten()
     same = sl.accel.BVH(arrays.positions, arrays.faces)
-    assert sl.pathtrace.path_trace(ball, (4, 4), samples=1, bvh=same).samples == 1
+    assert sl.pathtrace.path_trace(ball, (4, 4), samples=1, bvh=same).samples.max() == 1
     for bvh in (
         sl.accel.BVH(wrong.positions, wrong.faces),
         sl.accel.BVH(arrays.positions, np.roll(arrays.faces, 1, axis=1)),

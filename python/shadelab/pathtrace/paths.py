@@ -2,42 +2,29 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
-from typing import TYPE_CHECKING, Any, Literal, NamedTuple, TypeAlias, get_args
+import math
+from collections.abc import Callable, Iterator
+from typing import TYPE_CHECKING, Any, Literal, TypeAlias, get_args
 
 import numpy as np
 from numpy.typing import DTypeLike, NDArray
 
 from .. import _arrays, light
-from .._arrays import Floats
 from .._kernels import pathtrace as _kernels
 from ..accel import BVH
-from ._common import Estimate, Size, check_bvh, lens_camera, merge, picture_size, surface_offset
+from ._common import Size, lens_camera, picture_size, surface_offset
+from ._world import World, precision
+from .estimate import PILOT, Film, Traced, rounds
 from .filters import PixelFilter, pixel_filter
 
 if TYPE_CHECKING:
     from ..scene import Scene
 
-__all__ = ["Traced", "path_trace"]
+__all__ = ["Traced", "path_trace", "progressive"]
 
 Strategy: TypeAlias = Literal["uniform", "bsdf", "light", "mis"]
 Sampler: TypeAlias = Literal["sobol", "independent", "stratified", "latin_hypercube", "multi_jittered", "r2", "halton"]
 LightSelection: TypeAlias = Literal["auto", "all", "power", "tree"]
-
-
-class Traced(NamedTuple):
-    """A path-traced picture."""
-
-    radiance: Floats
-    """Mean of the samples, (H, W, 3), in W/(m² sr)."""
-    variance: Floats
-    """Variance of that mean, (H, W, 3)."""
-    samples: int
-    """How many samples each pixel has."""
-
-    def merge(self, other: Traced) -> Traced:
-        """One estimate of this run and another over different samples (by `start` or by seed)."""
-        return Traced(*merge(Estimate(*self), Estimate(*other)))
 
 
 def path_trace(
@@ -54,6 +41,7 @@ def path_trace(
     sampler: Sampler = "sobol",
     light_selection: LightSelection = "auto",
     filter: PixelFilter | str = "box",
+    clamp: float | None = None,
     bvh: BVH | None = None,
     dtype: DTypeLike = np.float32,
     progress: bool | Callable[[int, int], object] | None = None,
@@ -74,8 +62,9 @@ def path_trace(
     start : int
         Index of the first sample, for going on where a run ended: `merge` the results.
     target_error : float, optional
-        Stops once the picture's standard error (root mean square over pixels and channels) is this fraction of its
-        mean radiance, asked after 16, 32, 64 … samples.
+        Each square of 8 × 8 pixels stops once the standard error of its pixels (root mean square over them and their
+        channels) is this fraction of its mean radiance (of a twentieth of the picture's, if it is darker), asked after
+        32, 64, 128 … samples. See Notes for its bias.
     strategy : {"mis", "light", "bsdf", "uniform"}
         How light is looked for: by directions evenly over the hemisphere, by those of the material, by asking lights,
         or by the material and the lights, weighed by the power heuristic. All agree in the mean. Beams (point and
@@ -92,6 +81,9 @@ def path_trace(
         of more than four emitting faces, one by the tree.
     filter : PixelFilter or its name
         Of the pixels: where samples lie.
+    clamp : float, optional
+        Samples whose largest channel exceeds this are scaled down to it. Biased; by how much is measured: `removed`.
+        None clamps nothing.
     bvh : BVH, optional
         Of the flattened scene, in `dtype`: of the same vertices and faces; built if None.
     dtype : float32 or float64
@@ -102,7 +94,8 @@ def path_trace(
     Returns
     -------
     Traced
-        Radiance (H, W, 3), the variance of that mean, the number of samples.
+        Radiance (H, W, 3), the variance of that mean, the number of samples of each pixel, the number of outliers among
+        them, and what `clamp` took away.
 
     Raises
     ------
@@ -111,12 +104,25 @@ def path_trace(
 
     Notes
     -----
-    Unbiased up to `max_depth`. Time is the same for every sample, whatever their number, and memory does not grow with
-    it. `variance` is that of independent samples: of scrambled points an upper bound as a rule, so two seeds tell more.
+    Unbiased up to `max_depth`, without `clamp` and `target_error`. Time is the same for every sample, whatever their
+    number, and memory does not grow with it. `variance` is that of independent samples: of scrambled points an upper
+    bound as a rule, so two seeds tell more.
     Rectangles are seen from the side that shines, stop what meets it, and are not there from behind;
     surfaces have two sides. (`shadelab.render` draws no lights.) The camera's `near` and `far` cut nothing off:
     paths start at the eye. No firefly is clamped: caustics from narrow mirrors converge slowly, and `variance` shows
-    where. Fails to find light that only a mirror chain leads to (point lights seen in mirrors).
+    where, and `outliers` how often one sample outweighed all before it.
+
+    Stopping at `target_error` is biased: a square that by chance has met no bright path yet thinks itself done. Measured
+    over ten pictures of 24 × 16: a floor under an area light, nothing to 0.05 % at targets of 0.1 and 0.03; the same floor
+    under a small panel that only the material's directions look for (one in hundreds finds it), −2.5 % ± 0.5 % at targets
+    of 0.3 and 0.1. `outliers` are a warning there. Samples whose number is given in advance have no such bias.
+
+    With a lens (`Camera.aperture`) each sample has its point of it, and with a camera that moves its own time. Where
+    things move (`Instance.transform_end`), the scene is traced at up to 64 moments of the shutter a run, each with its
+    hierarchy refitted, which all pixels share: their errors are then alike, and fast edges show steps; further runs by
+    `start` add moments.
+
+    Fails to find light that only a mirror chain leads to (point lights seen in mirrors).
 
     References
     ----------
@@ -130,73 +136,172 @@ def path_trace(
     >>> path_trace(ball, (8, 8), samples=4).radiance.shape
     (8, 8, 3)
     """
-    width, height = picture_size(size)
-    samples = _arrays.count("samples", samples, 1, 1 << 24)
-    max_depth = _arrays.count("max_depth", max_depth, 0, 1 << 16)
-    seed = _arrays.count("seed", seed, 0, 2**64 - 1)
-    start = _arrays.count("start", start, 0, 2**32 - 1 - samples)
+    prepared = _prepare(
+        scene,
+        size,
+        samples,
+        max_depth,
+        seed,
+        start=start,
+        strategy=strategy,
+        roulette=roulette,
+        sampler=sampler,
+        light_selection=light_selection,
+        filter=filter,
+        clamp=clamp,
+        bvh=bvh,
+        dtype=dtype,
+        progress=progress,
+    )
+    if target_error is None:
+        return prepared.whole()
+    *_, last = prepared.rounds(PILOT, _arrays.number("target_error", target_error, above=0.0))
+    return last
+
+
+def progressive(
+    scene: Scene,
+    size: Size = (1280, 720),
+    samples: int = 4096,
+    max_depth: int = 8,
+    seed: int = 0,
+    *,
+    first: int = 1,
+    target_error: float | None = None,
+    **options: Any,
+) -> Iterator[Traced]:
+    """Pictures that get better: an iterator of frames with `first`, twice, four times … as many samples.
+
+    Parameters
+    ----------
+    scene, size, max_depth, seed
+        As in `path_trace`.
+    samples : int
+        Of each pixel, in the last frame.
+    first : int
+        Of each pixel, in the first frame.
+    target_error : float, optional
+        As in `path_trace`: later frames refine the tiles that need it, and the last comes when none does.
+    **options
+        All others of `path_trace`: `start`, `strategy`, `filter`, `clamp`, `progress` …; progress counts anew for each
+        frame.
+
+    Returns
+    -------
+    iterator of Traced
+        Each frame holds all samples so far; stop whenever it is good enough. Frames are the user's own arrays.
+
+    Raises
+    ------
+    TypeError, ValueError
+        At once, if an argument is out of its domain.
+
+    Notes
+    -----
+    The last frame is `path_trace`'s picture but for rounding. All frames together cost as much, and memory does not
+    grow with samples. Leaving the loop at a frame that looks good biases the picture as `target_error` does.
+
+    Examples
+    --------
+    >>> from shadelab import mesh, scene
+    >>> ball = scene.Scene(mesh.icosphere(2), background=(1.0, 1.0, 1.0))
+    >>> [int(frame.samples.max()) for frame in progressive(ball, (8, 8), samples=10)]
+    [1, 2, 4, 8, 10]
+    """
+    first = _arrays.count("first", first, 1)
     if target_error is not None:
         target_error = _arrays.number("target_error", target_error, above=0.0)
-    precision = np.dtype(dtype)
-    if precision not in (np.dtype(np.float32), np.dtype(np.float64)):
-        raise TypeError(f"dtype: expected float32 or float64, got {precision}")
-    call = _arrays.progress_callback(progress, "path trace")
+    return _prepare(scene, size, samples, max_depth, seed, **options).rounds(first, target_error)
+
+
+class _Prepared:
+    """A scene ready to be traced, round by round."""
+
+    def __init__(self, world: World, size: Size, start: int, samples: int, seed: int) -> None:
+        self.world, self.size, self.start, self.samples, self.seed = world, size, start, samples, seed
+        self.depths: tuple[int, int] = (0, 0)
+        self.names: tuple[str, str, str] = ("", "", "")
+        self.filter: tuple[str, float, float] = ("box", 0.5, 1.0)
+        self.clamp = math.inf
+        self.progress: Any = None
+        self.lights = light._table("lights", world.scene.lights)
+        environment = world.scene.environment
+        self.sky = None if environment is None else environment._panorama(world.dtype)
+
+    def film(self) -> Film:
+        return Film((self.size[1], self.size[0]), self.world.dtype, math.isfinite(self.clamp))
+
+    def whole(self) -> Traced:
+        """All samples at once."""
+        film = self.film()
+        for part in self.parts(self.start, self.samples, None):
+            film.add(part)
+        return film.picture()
+
+    def rounds(self, first: int, target: float | None) -> Iterator[Traced]:
+        return rounds(self.parts, self.film(), self.start, self.samples, first, target)
+
+    def parts(self, start: int, samples: int, pixels: NDArray[np.int32] | None) -> Iterator[Traced]:
+        """Samples of the picture, or of the pixels listed in one row, by the moments at which they see the scene."""
+        dtype, size = self.world.dtype, self.size
+        shape = (size[1], size[0]) if pixels is None else (1, len(pixels))
+        for moment in self.world.moments(start, samples, self.seed):
+            a = moment.arrays
+            tables = (a.positions, a.faces, a.normals, a.material_ids, a.kinds, a.rows, a.emission)
+            flat = [np.require(x, requirements=["C", "A"]) for x in tables]
+            mean, variance = (np.empty((*shape, 3), dtype) for _ in range(2))
+            outliers = np.empty(shape, np.int32)
+            removed = np.empty((*shape, 3), dtype) if math.isfinite(self.clamp) else None
+            out = [mean.reshape(-1, 3), variance.reshape(-1, 3), outliers.reshape(-1)]
+            background = tuple(float(c) for c in self.world.scene.background)
+            _kernels.path_trace(
+                moment.bvh._tree,
+                flat[:4],
+                a.colors,
+                flat[4:],
+                self.lights,
+                (background, surface_offset(a.positions), self.sky),
+                (lens_camera(self.world.scene.camera, size, moment.shutter), self.filter),
+                ((size[0], moment.samples, moment.start, *self.depths, self.seed), self.names, self.clamp),
+                pixels,
+                [*out, None if removed is None else removed.reshape(-1, 3)],
+                self.progress,
+            )
+            yield Traced(mean, variance, np.full(shape, moment.samples, np.int32), outliers, removed)
+
+
+def _prepare(
+    scene: Scene,
+    size: Size,
+    samples: int,
+    max_depth: int,
+    seed: int,
+    *,
+    start: int = 0,
+    strategy: Strategy = "mis",
+    roulette: int = 1,
+    sampler: Sampler = "sobol",
+    light_selection: LightSelection = "auto",
+    filter: PixelFilter | str = "box",
+    clamp: float | None = None,
+    bvh: BVH | None = None,
+    dtype: DTypeLike = np.float32,
+    progress: bool | Callable[[int, int], object] | None = None,
+) -> _Prepared:
+    size = picture_size(size)
+    samples = _arrays.count("samples", samples, 1, 1 << 24)
+    depth = _arrays.count("max_depth", max_depth, 0, 1 << 16)
+    seed = _arrays.count("seed", seed, 0, 2**64 - 1)
+    start = _arrays.count("start", start, 0, 2**32 - 1 - samples)
     names = (
         _arrays.choice("strategy", strategy, get_args(Strategy)),
         _arrays.choice("sampler", sampler, get_args(Sampler)),
         _arrays.choice("light_selection", light_selection, get_args(LightSelection)),
     )
-    depths = max_depth, _arrays.count("roulette", roulette, 0, 1 << 16)
-    trace = _tracer(scene, (width, height), depths, seed, names, pixel_filter(filter), bvh, precision)
-    if target_error is None:
-        return trace(start, samples, call)
-    result = Traced(np.zeros((height, width, 3), precision), np.zeros((height, width, 3), precision), 0)
-    while result.samples < samples:
-        # Twice as many each time, so that the checks cost little.
-        count = min(max(16, result.samples), samples - result.samples)
-        result = result.merge(trace(start + result.samples, count, call))
-        mean = float(result.radiance.mean(dtype=np.float64))
-        if float(result.variance.mean(dtype=np.float64)) <= (target_error * mean) ** 2:
-            break
-    return result
-
-
-def _tracer(
-    scene: Scene,
-    size: Size,
-    depths: tuple[int, int],
-    seed: int,
-    names: tuple[str, str, str],
-    pixels: PixelFilter,
-    bvh: BVH | None,
-    dtype: np.dtype[Any],
-) -> Callable[[int, int, Any], Traced]:
-    """A function of (start, samples, progress) that renders the scene."""
-    arrays = scene.flatten(dtype)
-    if bvh is None:
-        bvh = BVH(arrays.positions, arrays.faces)
-    else:
-        check_bvh(bvh)
-        own, mine = (bvh._positions, bvh._faces), (arrays.positions, arrays.faces)
-        if own[0].dtype != dtype or not all(np.array_equal(a, b) for a, b in zip(own, mine, strict=True)):
-            raise ValueError(f"bvh: expected one of the flattened scene in {dtype}")
-    _arrays.warn_if_coarse(arrays.positions, dtype, 4)
-    mesh = (arrays.positions, arrays.faces, arrays.normals, arrays.material_ids)
-    tables = (arrays.kinds, arrays.rows, arrays.emission)
-    flat = [np.require(a, requirements=["C", "A"]) for a in (*mesh, *tables)]
-    view = lens_camera(scene.camera, size), pixels._kernel()
-    sky = None if scene.environment is None else scene.environment._panorama(dtype)
-    surroundings = (tuple(float(c) for c in scene.background), surface_offset(arrays.positions), sky)
-    lights = light._table("lights", scene.lights)
-    tree = bvh._tree
-
-    def trace(start: int, samples: int, progress: Any) -> Traced:
-        mean, variance = (np.empty((size[1], size[0], 3), dtype) for _ in range(2))
-        options = ((size[0], samples, start, *depths, seed), names, np.inf)
-        out: tuple[NDArray[Any] | None, ...] = (mean.reshape(-1, 3), variance.reshape(-1, 3), None, None)
-        _kernels.path_trace(
-            tree, flat[:4], arrays.colors, flat[4:], lights, surroundings, view, options, None, out, progress
-        )
-        return Traced(mean, variance, samples)
-
-    return trace
+    roulette = _arrays.count("roulette", roulette, 0, 1 << 16)
+    kernel_filter = pixel_filter(filter)._kernel()
+    limit = math.inf if clamp is None else _arrays.number("clamp", clamp, above=0.0)
+    made = _Prepared(World(scene, bvh, precision(dtype)), size, start, samples, seed)
+    made.depths, made.names, made.filter, made.clamp = (depth, roulette), names, kernel_filter, limit
+    made.progress = _arrays.progress_callback(progress, "path trace")
+    return made
