@@ -98,7 +98,7 @@ def aovs(
     >>> ball = scene.Scene(mesh.icosphere(2), camera=scene.Camera((0, 0, 4), (0, 0, 0), fov_y=0.3))
     >>> seen = aovs(ball, (3, 3))
     >>> seen.depth.round(1)[1], seen.coverage[0]
-    (array([3. , 3. , 3. ], dtype=float32), array([1., 1., 1.], dtype=float32))
+    (array([3.1, 3. , 3.1], dtype=float32), array([1., 1., 1.], dtype=float32))
     """
     size = picture_size(size)
     samples = _arrays.count("samples", samples, 0, 1 << 24)

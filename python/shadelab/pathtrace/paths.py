@@ -112,10 +112,11 @@ def path_trace(
     paths start at the eye. No firefly is clamped: caustics from narrow mirrors converge slowly, and `variance` shows
     where, and `outliers` how often one sample outweighed all before it.
 
-    Stopping at `target_error` is biased: a square that by chance has met no bright path yet thinks itself done. Measured
-    over ten pictures of 24 × 16: a floor under an area light, nothing to 0.05 % at targets of 0.1 and 0.03; the same floor
-    under a small panel that only the material's directions look for (one in hundreds finds it), −2.5 % ± 0.5 % at targets
-    of 0.3 and 0.1. `outliers` are a warning there. Samples whose number is given in advance have no such bias.
+    Stopping at `target_error` is biased: a square that by chance has met no bright path yet thinks itself done.
+    Measured over ten pictures of 24 × 16: a floor under an area light, none to 0.05 % at targets of 0.1 and 0.03; the
+    same floor under a small panel that only the material's directions look for (one in hundreds finds it), −2.5 % ±
+    0.5 % at targets of 0.3 and 0.1. `outliers` are a warning there. Samples whose number is given in advance have no
+    such bias.
 
     With a lens (`Camera.aperture`) each sample has its point of it, and with a camera that moves its own time. Where
     things move (`Instance.transform_end`), the scene is traced at up to 64 moments of the shutter a run, each with its
