@@ -85,18 +85,15 @@ pub fn scrambled<T: Real>(key: Key, index: u32, dimension: u32) -> T {
         return Scramble::keyed(key).fraction(index.reverse_bits());
     }
     let (n, power) = nested_digits(base);
-    let (mut hash, mut number, mut rest, reciprocal) = (root(key), 0.0, index, 1.0 / base as f32);
-    for _ in 0..n {
-        let (digit, next) = push(hash, base, reciprocal, rest % base);
-        number = number * f64::from(base) + f64::from(digit);
-        (hash, rest) = (next, rest / base);
-    }
-    finish(number, hash, 1.0 / power as f64, 0.0)
+    one(root(key), 0.0, base, u64::from(index), n, power)
 }
 
 /// The digits of `index` mirrored at the point, the last of them the first.
 fn mirrored(index: u64, base: u32) -> f64 {
     let (mut rest, b) = (index, u64::from(base));
+    if index < b {
+        return index as f64 / b as f64;
+    }
     if index < 1 << 50 {
         let (mut number, mut power) = (0u64, 1u64);
         while rest != 0 {
@@ -265,7 +262,8 @@ fn body<T: Real>(first: u64, tables: &[Table], rows: Rows<'_, T>) {
             while done < count {
                 // A run of indices that agree in all but the digits looked up.
                 let index = first + (start + done) as u64;
-                let (high, low) = (index / size, (index % size) as usize);
+                let (high, low) =
+                    if size == 1 { (index, 0) } else { (index / size, (index % size) as usize) };
                 let n = (count - done).min((size - low as u64).min(TILE as u64) as usize);
                 if tails[d].0 != high {
                     tails[d] = (high, table.tail(base, high));
@@ -311,6 +309,18 @@ fn run<T: Real>(
     }
 }
 
+/// A coordinate by itself.
+#[inline(always)]
+fn one<T: Real>(mut hash: u32, mut number: f64, base: u32, high: u64, digits: u32, power: u64) -> T {
+    let mut rest = high;
+    for _ in 0..digits {
+        let (r, next) = push(hash, base, 1.0 / base as f32, (rest % u64::from(base)) as u32);
+        number = number * f64::from(base) + f64::from(r);
+        (hash, rest) = (next, rest / u64::from(base));
+    }
+    finish(number, hash, 1.0 / power as f64, if rest == 0 { 0.0 } else { mirrored(rest, base) })
+}
+
 /// Up to [`TILE`] coordinates whose prefixes differ and whose upper digits are the same.
 #[inline(always)]
 fn nested<T: Real>(
@@ -324,6 +334,10 @@ fn nested<T: Real>(
     out: &mut [T],
 ) {
     let n = hashes.len().min(TILE);
+    if n == 1 {
+        out[0] = one(hashes[0], numbers[0], base, high, digits, power);
+        return;
+    }
     // All lanes work; those without a point on zeros.
     let (mut hash, mut number, mut group) = ([0u32; TILE], [0.0; TILE], [0u32; TILE]);
     let lanes = n.next_multiple_of(8);

@@ -113,7 +113,12 @@ impl Scramble {
     /// Scrambled digits, and after them plain ones.
     #[inline(always)]
     fn finish<T: Real>(self, high: u32, low: u32) -> T {
-        fraction(high, if size_of::<T>() == 4 { 0 } else { mix32(high ^ self.0[1]) ^ self.0[3] ^ low })
+        fraction(high, if size_of::<T>() == 4 { 0 } else { self.below(high, low) })
+    }
+    /// The digits after scrambled ones.
+    #[inline(always)]
+    fn below(self, high: u32, low: u32) -> u32 {
+        mix32(high ^ self.0[1]) ^ self.0[3] ^ low
     }
 }
 
@@ -208,8 +213,14 @@ fn tile<T: Real>(high: u32, low: u32, columns: &Columns, scramble: Option<Scramb
     }
     match scramble {
         Some(s) => {
+            // Integers first, then floats: loops of one width are vectorised.
+            let mut lows = [0; TILE];
             for j in 0..TILE {
-                values[j] = s.finish(s.apply(digits[j]), low);
+                digits[j] = s.apply(digits[j]);
+                lows[j] = s.below(digits[j], low);
+            }
+            for j in 0..TILE {
+                values[j] = fraction(digits[j], if size_of::<T>() == 4 { 0 } else { lows[j] });
             }
         }
         None => {
