@@ -4,9 +4,15 @@ import numpy as np
 import shadelab as sl
 from shadelab import brdf, mesh, scene
 
-from .test_path_trace import ply
+from .scenes import ply
 
 GLOW = [(0.9, 0.2, 0.1), (0.1, 0.8, 0.3), (0.2, 0.3, 1.0)]
+
+
+def tiles(picture, side=8):
+    """Means over squares of pixels."""
+    h, w, c = picture.shape
+    return picture.astype(np.float64).reshape(h // side, side, w // side, side, c).mean((1, 3))
 
 
 def glowing(color):

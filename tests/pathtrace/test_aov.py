@@ -56,7 +56,8 @@ def test_means_agree_with_mitsubas(tmp_path):
     """Albedo, position, shading normal and depth of a box-filtered picture, by tiles, with a lens."""
     mi = pytest.importorskip("mitsuba")
     mi.set_variant("scalar_rgb")
-    from .test_path_trace import mitsuba_scene, tiles
+    from .recursion_scenes import tiles
+    from .scenes import mitsuba_scene
 
     lens = {"aperture": 0.2, "focus_distance": 2.5}
     plain = scene.Scene(

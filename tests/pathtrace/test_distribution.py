@@ -7,8 +7,8 @@ from shadelab import mesh, scene
 from shadelab.light import RectLight
 from shadelab.pathtrace import PixelFilter, distribution, path_trace
 
-from .recursion_scenes import GLOW, cards, glowing, mitsuba_picture
-from .test_path_trace import lambert, thing, tiles
+from .recursion_scenes import GLOW, cards, glowing, mitsuba_picture, tiles
+from .scenes import lambert, thing
 
 SIZE = (48, 32)
 

@@ -8,7 +8,7 @@ from shadelab.light import RectLight
 from shadelab.pathtrace import PixelFilter, path_trace, progressive
 
 from .recursion_scenes import cards, glowing, mitsuba_picture
-from .test_path_trace import lambert, thing
+from .scenes import lambert, thing
 
 SIZE = (48, 32)
 

@@ -7,8 +7,8 @@ from shadelab import brdf, mesh, scene
 from shadelab.light import DirectionalLight, PointLight, RectLight
 from shadelab.pathtrace import whitted
 
-from .recursion_scenes import glowing, mitsuba_picture, through_mirrors_and_glass
-from .test_path_trace import lambert, thing, tiles
+from .recursion_scenes import glowing, mitsuba_picture, through_mirrors_and_glass, tiles
+from .scenes import lambert, thing
 
 SIZE = (48, 32)
 
