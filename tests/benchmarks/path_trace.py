@@ -1,12 +1,15 @@
-"""Path tracing and direct light against Mitsuba 3: million samples a second, ratios within one run.
+"""Path tracing against Mitsuba 3: time to equal error, time a sample over sizes and samples, time to a first picture.
 
-Both use as many threads as the machine has cores.
+Errors are against one converged picture of Mitsuba's in two independent halves A and B, mean((x − A)(x − B)), so that
+its own noise drops out; efficiency is one over error² · time. Mitsuba runs in processes of its own, its kernels compiled
+before they are timed. Our own independent numbers show what is due to speed and what to scrambled points.
 
-python tests/benchmarks/path_trace.py [--size 320x180] [--samples 64]
+python tests/benchmarks/path_trace.py [--size 256] [--samples 64] [--converged 1024]
 """
 
 import argparse
 import importlib.util
+import os
 import subprocess
 import sys
 import tempfile
@@ -15,90 +18,171 @@ from pathlib import Path
 
 import numpy as np
 import shadelab as sl
+from shadelab import mesh, scene
+from shadelab.environment import Environment
+from shadelab.light import RectLight
 
 spec = importlib.util.spec_from_file_location(
-    "path_trace_scenes", Path(__file__).parents[1] / "pathtrace" / "test_path_trace.py"
+    "path_trace_scenes", Path(__file__).parents[1] / "pathtrace" / "scenes.py"
 )
 scenes = importlib.util.module_from_spec(spec)
-sys.modules["path_trace_scenes"] = scenes
 spec.loader.exec_module(scenes)
 
+DEPTH = 7
 
-def best(f, repeat=2):
-    """The shortest time of `repeat` runs, after one to warm up."""
+
+def cornell():
+    """Mitsuba's own Cornell box, but that the lamp reflects nothing and has a black back."""
+    white, green, red = (
+        scenes.lambert(*c)
+        for c in (
+            (0.885809, 0.698859, 0.666422),
+            (0.105421, 0.37798, 0.076425),
+            (0.570068, 0.0430135, 0.0443706),
+        )
+    )
+    turn = sl.transform.rotate_axis
+
+    def wall(at, axis, angle, material, size=(2, 2)):
+        matrix = sl.transform.translate(at) @ turn(axis, np.radians(angle))
+        return scene.Instance(mesh.plane(size), matrix, (material,))
+
+    def block(at, angle, size):
+        matrix = sl.transform.translate(at) @ turn((0, 1, 0), np.radians(angle))
+        return scene.Instance(mesh.box(size), matrix, (white,))
+
+    things = [
+        wall((0, -1, 0), (0, 1, 0), 0, white),
+        wall((0, 1, 0), (1, 0, 0), 180, white),
+        wall((0, 0, -1), (1, 0, 0), 90, white),
+        wall((1, 0, 0), (0, 0, 1), 90, green),
+        wall((-1, 0, 0), (0, 0, 1), -90, red),
+        block((0.335, -0.7, 0.38), -17, (0.6, 0.6, 0.6)),
+        block((-0.33, -0.4, -0.28), 18.25, (0.6, 1.22, 0.6)),
+        wall((0, 0.9905, 0.01), (0, 1, 0), 0, scenes.lambert(0, 0, 0), (0.46, 0.38)),
+    ]
+    lamp = RectLight((0, 0.99, 0.01), (0.46, 0, 0), (0, 0, 0.38), (18.387, 13.9873, 6.75357))
+    return scene.Scene(things, (lamp,), scene.Camera((0, 0, 4), (0, 0, 0), fov_y=np.radians(39.3077)))
+
+
+def bunny():
+    """A bunny on the ground under a panorama."""
+    data = Path(os.environ["SHADELAB_DATA"])
+    body = scene.load_mesh(data / "bunny.obj")
+    low, high = np.asarray(body.bounds, float)
+    size = float((high - low).max())
+    place = sl.transform.scale([1 / size] * 3) @ sl.transform.translate(-np.array([*(low + high) / 2]))
+    body = body.transformed(place)
+    floor = float(np.asarray(body.bounds)[0, 1])
+    things = [
+        scene.Instance(body, None, (scenes.lambert(0.6, 0.55, 0.5),)),
+        scenes.thing(mesh.plane((6, 6)), scenes.lambert(0.5, 0.5, 0.5), (0, floor, 0)),
+    ]
+    camera = scene.Camera((0.6, 0.6, 1.8), (0, 0, 0), fov_y=0.7)
+    return scene.Scene(things, (), camera, environment=Environment.load(data / "museum.exr"))
+
+
+BUILDS = {"cornell": cornell, "bunny": bunny}
+
+
+def clock():
+    """Wall and processor seconds, all threads."""
+    return np.array([time.perf_counter(), time.process_time()])
+
+
+def timed(f):
     f()
-    times = []
-    for _ in range(repeat):
-        start = time.perf_counter()
-        f()
-        times.append(time.perf_counter() - start)
-    return min(times)
+    start = clock()
+    result = f()
+    return result, clock() - start
 
 
-def mitsuba_time(variant, name, samples):
-    """Seconds for one of the scenes."""
+def error(picture, halves):
+    a, b = (picture.astype(np.float64) - half for half in halves)
+    return float((a * b).mean())
+
+
+def mitsuba(variant, name, size, samples, converged, out):
+    """Times a picture; with `converged` samples, two halves of the reference as well."""
     import mitsuba as mi
 
     mi.set_variant(variant)
     mi.set_log_level(mi.LogLevel.Error)
+    scenes.SIZE = (size, size)
     with tempfile.TemporaryDirectory() as folder:
-        theirs = scenes.mitsuba_scene(mi, getattr(scenes, name)(), Path(folder), 4)
-        return best(lambda: np.array(mi.render(theirs, spp=samples)))
+        theirs = scenes.mitsuba_scene(mi, BUILDS[name](), Path(folder), DEPTH, roulette=5)
+        picture, seconds = timed(lambda: np.array(mi.render(theirs, spp=samples, seed=1)))
+        halves = np.zeros((2, *picture.shape))
+        for i in range(2 * (converged // 64)):
+            halves[i % 2] += np.array(mi.render(theirs, spp=64, seed=100 + i)) / (converged // 64)
+    np.savez(out, picture=picture, seconds=seconds, halves=halves)
+
+
+def of_mitsuba(variant, name, given, converged=0):
+    with tempfile.TemporaryDirectory() as folder:
+        out = str(Path(folder) / "result.npz")
+        numbers = [str(n) for n in (given.size, given.samples, converged)]
+        # In a process of its own: some LLVM releases abort on Dr.Jit's code.
+        run = subprocess.run([sys.executable, __file__, "--mitsuba", variant, name, *numbers, out], check=False)
+        return dict(np.load(out)) if run.returncode == 0 else None
+
+
+def equal_error(given):
+    for name, build in BUILDS.items():
+        world, size = build(), (given.size, given.size)
+        llvm = of_mitsuba("llvm_ad_rgb", name, given, given.converged)
+        scalar = of_mitsuba("scalar_rgb", name, given, 0 if llvm else given.converged)
+        halves = (llvm or scalar)["halves"]
+        rows = {"llvm_ad_rgb": llvm, "scalar_rgb": scalar}
+        rows = {k: (v["picture"], v["seconds"]) for k, v in rows.items() if v}
+        for sampler in ("sobol", "independent"):
+            options = {"samples": given.samples, "max_depth": DEPTH, "seed": 1, "sampler": sampler}
+            traced, seconds = timed(lambda o=options: sl.pathtrace.path_trace(world, size, **o))  # noqa: B023
+            rows[f"shadelab {sampler}"] = traced.radiance, seconds
+        best = {k: error(p, halves) * t for k, (p, t) in rows.items()}
+        count = given.size**2 * given.samples
+        for k, (picture, seconds) in rows.items():
+            ratio = best["shadelab sobol"] / best[k]
+            wall, cpu = seconds / count * 1e9
+            spread = error(picture, halves) * given.samples
+            print(f"{name:8} {k:22} wall {wall:6.0f} ns, cpu {cpu:6.0f} ns a sample, error² · samples {spread:.5f},")
+            print(f"{'':31} efficiency over ours: wall {ratio[0]:.3f}, cpu {ratio[1]:.3f}")
+
+
+def constancy():
+    world = cornell()
+    for size, samples in ((128, 64), (256, 16), (512, 4), (1024, 1), (2048, 1), (128, 1), (128, 4), (64, 4096 // 16)):
+        _, seconds = timed(lambda n=size, k=samples: sl.pathtrace.path_trace(world, (n, n), k, DEPTH))
+        print(f"{size:5}² {samples:5} samples: cpu {seconds[1] / size**2 / samples * 1e9:6.0f} ns a sample")
+
+
+def first_picture():
+    for name in ("shadelab", "llvm_ad_rgb"):
+        start = time.perf_counter()
+        subprocess.run([sys.executable, __file__, "--first", name], check=False)
+        print(f"first picture, {name}: {time.perf_counter() - start:.2f} s")
 
 
 def main():
-    parser = argparse.ArgumentParser(description=__doc__)
-    parser.add_argument("--size", default="320x180")
-    parser.add_argument("--samples", type=int, default=32)
-    parser.add_argument("--mitsuba", nargs=2, help=argparse.SUPPRESS)
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("--size", type=int, default=256)
+    parser.add_argument("--samples", type=int, default=64)
+    parser.add_argument("--converged", type=int, default=1024)
+    parser.add_argument("--mitsuba", nargs=6, help=argparse.SUPPRESS)
+    parser.add_argument("--first", help=argparse.SUPPRESS)
     given = parser.parse_args()
-    size = tuple(int(x) for x in given.size.split("x"))
-    scenes.SIZE = size
-    n = size[0] * size[1] * given.samples / 1e6
     if given.mitsuba:
-        print(n / mitsuba_time(*given.mitsuba, given.samples))
-        return
-    print(f"{'scene':12} {'shadelab':>9} " + " ".join(f"{v:>12} {'ratio':>6}" for v in ("scalar_rgb", "llvm_ad_rgb")))
-    for build in (scenes.cornell, scenes.spheres, scenes.punctual):
-        world = build()
-        ours = n / best(lambda world=world: sl.pathtrace.path_trace(world, size, given.samples, max_depth=4))
-        row = f"{build.__name__:12} {ours:9.2f} "
-        for variant in ("scalar_rgb", "llvm_ad_rgb"):
-            # In a process of its own: some LLVM releases abort on Dr.Jit's code.
-            command = [sys.executable, __file__, "--size", given.size, "--samples", str(given.samples)]
-            run = subprocess.run([*command, "--mitsuba", variant, build.__name__], capture_output=True, text=True)
-            rate = float(run.stdout) if run.returncode == 0 else float("nan")
-            row += f"{rate:12.2f} {ours / rate:6.2f} "
-        print(row)
-    world = sl.scene.default()
-    arrays = world.flatten()
-    bvh = sl.accel.BVH(arrays.positions, arrays.faces)
-    hit = sl.pathtrace.ray_cast(bvh, world.camera, size)
-    seen = hit.face >= 0
-    corners = arrays.positions[arrays.faces[hit.face[seen]]]
-    weights = np.stack([1 - hit.u - hit.v, hit.u, hit.v], -1)[seen][..., None]
-    points = (corners * weights).sum(-2)
-    normals = np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])
-    normals /= np.linalg.norm(normals, axis=-1, keepdims=True)
-    for specular in (0.0, 1.0):
-        rate = (
-            len(points)
-            * given.samples
-            / 1e6
-            / best(
-                lambda specular=specular: sl.pathtrace.direct_light(
-                    bvh,
-                    world.lights,
-                    points,
-                    normals,
-                    [0.5] * 3,
-                    specular=specular,
-                    eye=world.camera.eye,
-                    samples=given.samples,
-                )
-            )
-        )
-        print(f"direct light, specular {specular:.0f}: {rate:.1f} million samples/s")
+        variant, name, *numbers, out = given.mitsuba
+        mitsuba(variant, name, *map(int, numbers), out)
+    elif given.first == "shadelab":
+        sl.pathtrace.path_trace(cornell(), (256, 256), 1, DEPTH)
+    elif given.first:
+        with tempfile.TemporaryDirectory() as folder:
+            mitsuba(given.first, "cornell", 256, 1, 0, str(Path(folder) / "first.npz"))
+    else:
+        equal_error(given)
+        constancy()
+        first_picture()
 
 
 if __name__ == "__main__":

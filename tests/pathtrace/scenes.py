@@ -162,7 +162,7 @@ def envmap(panorama, height=512):
     return np.ascontiguousarray(panorama.eval(w.astype(np.float32)))
 
 
-def mitsuba_scene(mi, world, folder, depth):
+def mitsuba_scene(mi, world, folder, depth, roulette=100):
     """The same scene for Mitsuba, whose depth counts one more."""
     transform, rgb = mi.ScalarTransform4f, lambda c: {"type": "rgb", "value": [float(x) for x in c]}
     camera = world.camera
@@ -170,7 +170,7 @@ def mitsuba_scene(mi, world, folder, depth):
     film = {"type": "hdrfilm", "width": SIZE[0], "height": SIZE[1], "rfilter": {"type": "box"}, "pixel_format": "rgb"}
     out = {
         "type": "scene",
-        "integrator": {"type": "path", "max_depth": depth + 1, "rr_depth": 100},
+        "integrator": {"type": "path", "max_depth": depth + 1, "rr_depth": roulette},
         "sensor": {"type": "perspective", "fov": np.degrees(camera.fov_y), "fov_axis": "y", "to_world": to_world},
     }
     out["sensor"] |= {"film": film, "sampler": {"type": "independent"}}

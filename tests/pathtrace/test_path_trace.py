@@ -35,7 +35,7 @@ BUILDS = (
     "cornell spheres punctual furnace glass mirror many_lights environment emissive_mesh small_bright_light".split()
 )
 # Paths of each picture; scenes with much noise need more for half a per cent to show.
-MORE = {"small_bright_light": 2, "glass": 2, "mirror": 4, "emissive_mesh": 2}
+MORE = {"small_bright_light": 2, "glass": 2, "mirror": 4, "emissive_mesh": 2, "many_lights": 4}
 
 
 @pytest.mark.parametrize("name", BUILDS)
@@ -45,9 +45,10 @@ def test_agrees_with_mitsuba_within_monte_carlo_error(name, tmp_path):
     mi.set_log_level(mi.LogLevel.Error)
     world, depth, runs = getattr(scenes, name)(), 4, 16
     theirs = scenes.mitsuba_scene(mi, world, tmp_path, depth)
-    spp = 32 * MORE.get(name, 1)
-    other = np.stack([tiles(np.array(mi.render(theirs, spp=spp, seed=s))) for s in range(runs)])
-    ours = np.stack([tiles(sl.pathtrace.path_trace(world, SIZE, 64, depth, s).radiance) for s in range(runs)])
+    more = MORE.get(name, 1)
+    other = np.stack([tiles(np.array(mi.render(theirs, spp=32 * more, seed=s))) for s in range(runs)])
+    ours = [sl.pathtrace.path_trace(world, SIZE, 64 * more, depth, s).radiance for s in range(runs)]
+    ours = np.stack([tiles(picture) for picture in ours])
     # Spreads of both sides by their runs; where every path carries the same, single precision's rounding remains.
     spread = (ours.var(0, ddof=1) + other.var(0, ddof=1)) / runs
     mean = ours.mean(0)
