@@ -133,7 +133,8 @@ impl<T: Real> Surfaces<'_, T> {
     /// Of the ball around everything.
     fn radius(&self) -> f64 {
         let [low, high] = self.bvh.bounds();
-        0.5 * (0..3).map(|k| (high[k].to_f64() - low[k].to_f64()).powi(2)).sum::<f64>().sqrt()
+        let side = |k: usize| high[k].to_f64() - low[k].to_f64();
+        0.5 * (0..3).map(|k| side(k) * side(k)).sum::<f64>().sqrt()
     }
 
     /// One draw from a source, of whose faces `pick` chooses one; the density does not count the chance of asking it.
