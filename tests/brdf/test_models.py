@@ -90,6 +90,11 @@ def test_terms_are_the_factors(model):
     np.testing.assert_allclose(terms.half, half / np.linalg.norm(half, axis=-1, keepdims=True), rtol=1e-12)
 
 
+def test_one_direction_has_terms_without_axes():
+    terms = brdf.RoughConductor(0.3).eval([0.0, 0.0, 1.0], [0.6, 0.0, 0.8], full_output=True)
+    assert terms.half.shape == (3,) and terms.distribution.shape == () and terms.value.shape == (3,)
+
+
 def test_models_without_facets_have_no_terms():
     with pytest.raises(ValueError, match="full_output: Diffuse is no model of facets"):
         brdf.Diffuse().eval([0, 0, 1], [0, 0, 1], full_output=True)

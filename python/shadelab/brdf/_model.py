@@ -197,7 +197,7 @@ class Model:
         n, dtype = len(wi), wi.dtype
         terms = [np.empty(s, dtype) for s in ((n, 3), n, (n, 3), n)]
         _kernels.model_terms(table, wi, wo, terms)
-        half, distribution, fresnel, masking = (t.reshape(*shape, *t.shape[1:]) for t in terms)
+        half, distribution, fresnel, masking = (t.reshape((*shape, *t.shape[1:])) for t in terms)
         return Terms(out, half, distribution, fresnel, masking)
 
     def pdf(self, wi: ArrayLike, wo: ArrayLike) -> Floats:

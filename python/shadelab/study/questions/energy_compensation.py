@@ -80,7 +80,8 @@ def _display(inputs: Views, value: Array) -> Array:
 
 _ABOUT = """Mirrors of a rough surface throw light at each other; models of one bounce lose it, a third at roughness
 0.75 and 59 % at 1. A perfect mirror in a furnace must give all back: the reference is one. How much of it does each
-compensation give back, and what does drawing a direction cost with it? The two colours of Kulla and Conty's lobe
+compensation give back, and what do 64 draws for a direction cost
+with it? The two colours of Kulla and Conty's lobe
 agree here, where nothing is absorbed; they part for coloured metals."""
 
 _FORMS = ("none", "kulla_conty", "kulla_conty_as_published", "scaled")
@@ -98,6 +99,6 @@ def question() -> Question:
         display=_display,
         size=(64, 64),
         about=" ".join(_ABOUT.split()),
-        element="draw",
+        element="direction",
         max_error=0.005,
     )
