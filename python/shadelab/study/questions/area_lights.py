@@ -25,7 +25,7 @@ class Floor:
     roughness: float = 0.5
 
 
-_PANEL = light.RectLight((0, 1.2, -0.5), (2, 0, 0), (0, -0.6, 0.8), (5, 5, 5))
+_PANEL = light.RectLight((0, 1.2, -0.5), (2, 0, 0), (0, 0.6, 0.8), (5, 5, 5))
 _WALL = light.RectLight((0, 0.5, -2), (3, 0, 0), (0, 1.0, 0), (5, 5, 5))
 _SCENES = {
     "panel, roughness 0.1": Floor(_PANEL, 0.1),
