@@ -1,8 +1,8 @@
 """Path tracing against Mitsuba 3: time to equal error, time a sample over sizes and samples, time to a first picture.
 
 Errors are against one converged picture of Mitsuba's in two independent halves A and B, mean((x − A)(x − B)), so that
-its own noise drops out; efficiency is one over error² · time. Mitsuba runs in processes of its own, its kernels compiled
-before they are timed. Our own independent numbers show what is due to speed and what to scrambled points.
+its own noise drops out; efficiency is one over error² · time. Mitsuba runs in processes of its own, its kernels
+compiled before they are timed. Our own independent numbers show what is due to speed and what to scrambled points.
 
 python tests/benchmarks/path_trace.py [--size 256] [--samples 64] [--converged 1024]
 """
