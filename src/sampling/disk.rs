@@ -24,18 +24,20 @@ pub(super) fn point_and_depth<T: Real>(u: [T; 2], method: Method) -> ([T; 2], T)
         Method::Concentric => {
             // Distances from the square's border, exact near it; radius with a sign, so that a wedge and its mirror
             // image share the formula.
-            let border = u.map(|u| two * if u > T::of(0.5) { one - u } else { u });
+            let border = u.map(|u| two * T::select(u > T::of(0.5), one - u, u));
             let [a, b] = [two * u[0] - one, two * u[1] - one];
+            // Choices, not branches: which wedge is chance.
             let wide = !(border[0] >= border[1]);
-            let (r, other, depth) = if wide { (a, b, border[0]) } else { (b, a, border[1]) };
-            let ratio = if r == T::zero() { T::zero() } else { other / r };
+            let (r, other) = (T::select(wide, a, b), T::select(wide, b, a));
+            let depth = T::select(wide, border[0], border[1]);
+            let ratio = other / T::select(r == T::zero(), T::one(), r);
             let (sin, cos) = math::sin_cos(T::PI * T::of(0.25) * ratio);
-            let point = if wide { [r * cos, r * sin] } else { [r * sin, r * cos] };
+            let point = [r * T::select(wide, cos, sin), r * T::select(wide, sin, cos)];
             (point, depth * (two - depth))
         }
         Method::Polar => {
             // Counted from the nearer end of the turn: small angles round less.
-            let turn = if u[1] > T::of(0.5) { u[1] - one } else { u[1] };
+            let turn = T::select(u[1] > T::of(0.5), u[1] - one, u[1]);
             let (sin, cos) = math::sin_cos(two * T::PI * turn);
             let r = u[0].sqrt();
             ([r * cos, r * sin], one - u[0])

@@ -21,10 +21,29 @@ fn triangle_method(method: &str) -> PyResult<triangle::Method> {
     }
 }
 
+/// `body` with the method as a constant, so that its loop has no branch.
+macro_rules! by_method {
+    ($method:expr, |$m:ident| $body:expr) => {
+        match disk_method($method)? {
+            disk::Method::Concentric => {
+                #[allow(non_upper_case_globals)]
+                const $m: disk::Method = disk::Method::Concentric;
+                $body
+            }
+            disk::Method::Polar => {
+                #[allow(non_upper_case_globals)]
+                const $m: disk::Method = disk::Method::Polar;
+                $body
+            }
+        }
+    };
+}
+
 #[pyfunction]
 pub fn square_to_disk(py: Python<'_>, method: &str, given: Arrays<'_>, out: Arrays<'_>) -> PyResult<()> {
-    let method = disk_method(method)?;
-    elementwise!(py, given, out, |u: [T; 2]| -> (p: [T; 2]) { disk::square_to_disk(u, method) })
+    by_method!(method, |Chosen| elementwise!(py, given, out, |u: [T; 2]| -> (p: [T; 2]) {
+        disk::square_to_disk(u, Chosen)
+    }))
 }
 
 #[pyfunction]
@@ -62,10 +81,9 @@ pub fn square_to_cosine_hemisphere(
     given: Arrays<'_>,
     out: Arrays<'_>,
 ) -> PyResult<()> {
-    let method = disk_method(method)?;
-    elementwise!(py, given, out, |u: [T; 2]| -> (d: [T; 3]) {
-        cosine::square_to_cosine_hemisphere(u, method).to_array()
-    })
+    by_method!(method, |Chosen| elementwise!(py, given, out, |u: [T; 2]| -> (d: [T; 3]) {
+        cosine::square_to_cosine_hemisphere(u, Chosen).to_array()
+    }))
 }
 
 #[pyfunction]
@@ -95,10 +113,9 @@ pub fn square_to_hemisphere(
     given: Arrays<'_>,
     out: Arrays<'_>,
 ) -> PyResult<()> {
-    let method = disk_method(method)?;
-    elementwise!(py, given, out, |u: [T; 2]| -> (d: [T; 3]) {
-        hemisphere::square_to_hemisphere(u, method).to_array()
-    })
+    by_method!(method, |Chosen| elementwise!(py, given, out, |u: [T; 2]| -> (d: [T; 3]) {
+        hemisphere::square_to_hemisphere(u, Chosen).to_array()
+    }))
 }
 
 #[pyfunction]
