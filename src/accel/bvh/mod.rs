@@ -6,6 +6,7 @@ mod build;
 pub(crate) mod closest;
 mod collapse;
 mod cut;
+mod few;
 mod lbvh;
 mod node;
 mod packet;
@@ -34,6 +35,8 @@ use std::sync::atomic::Ordering;
 pub struct Bvh<T> {
     nodes: Vec<Node<T>>,
     blocks: Vec<Block<T>>,
+    /// What batches of rays are traced through instead, if it is not empty.
+    few: few::Few<T>,
     bounds: [[T; 3]; 2],
     faces: usize,
 }
@@ -79,7 +82,8 @@ impl<T: Real> Bvh<T> {
                     collapse::collapse(&cuts, 0, positions, faces)
                 }
             };
-            Bvh { nodes: wide.nodes, blocks: wide.blocks, bounds: scene, faces: faces.len() }
+            let few = few::Few::new(positions, faces);
+            Bvh { nodes: wide.nodes, blocks: wide.blocks, few, bounds: scene, faces: faces.len() }
         })
     }
 
@@ -142,6 +146,10 @@ impl<T: Real> Bvh<T> {
         rays: impl Fn(usize) -> Ray<T>,
         mut answer: impl FnMut(usize, Hit<T>),
     ) {
+        if !self.few.is_empty() {
+            self.few.trace::<ANY, S>(s, &self.bounds, count, rays, answer);
+            return;
+        }
         let mut apart: Vec<u32> = Vec::new();
         let whole = count - count % packet::SIZE;
         for first in (0..whole).step_by(packet::SIZE) {

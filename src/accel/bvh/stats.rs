@@ -30,7 +30,7 @@ pub fn stats<T: Real>(tree: &Bvh<T>) -> Stats {
             }
         }
     }
-    stats.bytes = nodes * size_of::<Node<T>>() + blocks * size_of::<Block<T>>();
+    stats.bytes = nodes * size_of::<Node<T>>() + blocks * size_of::<Block<T>>() + tree.few.bytes();
     stats.children_per_node = children as f64 / nodes as f64;
     stats.triangles_per_block = tree.faces as f64 / (blocks as f64).max(1.0);
     stats

@@ -5,6 +5,7 @@
 //! nodes, the faces of blocks. What is read back is checked in full: nothing that a traversal relies on is left to trust.
 
 use super::Bvh;
+use super::few::Few;
 use super::node::{Child, MAX_DEPTH, Node, WIDTH};
 use crate::accel::block::{BLOCK, Block};
 use crate::accel::bounds;
@@ -179,7 +180,8 @@ impl Topology {
                 }
             }
         }
-        Bvh { nodes, blocks, bounds: bounds::scene_bounds(positions, faces), faces: faces.len() }
+        let few = Few::new(positions, faces);
+        Bvh { nodes, blocks, few, bounds: bounds::scene_bounds(positions, faces), faces: faces.len() }
     }
 }
 
