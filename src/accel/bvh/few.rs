@@ -70,42 +70,49 @@ impl<T: Real> Few<T> {
         size_of_val(&*self.vertices) + size_of_val(&*self.faces)
     }
 
-    /// Hands every ray's hit to `answer`, in whatever order.
+    /// Traces the `chosen` rays and hands each answer, with its ray's index, to `answer`.
     #[inline(always)]
     pub fn trace<const ANY: bool, S: Simd>(
         &self,
         s: S,
         bounds: &[[T; 3]; 2],
-        count: usize,
         rays: impl Fn(usize) -> Ray<T>,
+        chosen: &[u32],
         mut answer: impl FnMut(usize, Hit<T>),
     ) {
-        // The rays that wait, by dominant axis; at the end, those that are too few to fill all lanes.
+        // The rays that wait, by dominant axis. What remains at the end is brought up to eight by repetition.
         let mut waiting = [([0usize; 8], 0usize); 3];
-        for i in 0..count + 3 {
-            let axis = if i < count { dominant_axis(rays(i).direction) } else { i - count };
-            let (chosen, filled) = &mut waiting[axis];
-            if i < count {
-                chosen[*filled & 7] = i;
+        for i in 0..chosen.len() + 3 {
+            let ray = chosen.get(i).copied();
+            let axis = match ray {
+                Some(ray) => dominant_axis(rays(ray as usize).direction),
+                None => i - chosen.len(),
+            };
+            let (eight, filled) = &mut waiting[axis];
+            if let Some(ray) = ray {
+                eight[*filled & 7] = ray as usize;
                 *filled += 1;
+                if *filled < 8 {
+                    continue;
+                }
             }
-            if (i < count && *filled < 8) || *filled == 0 {
+            let lanes = std::mem::take(filled);
+            if lanes == 0 {
                 continue;
             }
-            let lanes = *filled;
-            let last = chosen[lanes - 1];
-            chosen[lanes..].fill(last);
-            *filled = 0;
-            let chosen = *chosen;
+            let mut eight = *eight;
+            for l in lanes..8 {
+                eight[l] = eight[lanes - 1];
+            }
             let hits = self.eight::<ANY, S>(
                 s,
                 bounds,
                 axis,
                 #[inline(always)]
-                |l| rays(chosen[l & 7]),
+                |l| rays(eight[l & 7]),
             );
             for l in 0..lanes {
-                answer(chosen[l & 7], hits.get(l));
+                answer(eight[l & 7], hits.get(l));
             }
         }
     }
@@ -137,11 +144,7 @@ impl<T: Real> Few<T> {
         let (mut best, mut best_u, mut best_v) = (ray.t_max, zero, zero);
         let mut best_face = splat8::<T, S>(s, -T::one());
         for (i, face) in self.faces.iter().enumerate() {
-            // Sound: corners are numbers of vertices, all of which were looked at.
-            let [a, b, c] = face.corners.map(
-                #[inline(always)]
-                |v| unsafe { seen.get_unchecked(v as usize).assume_init_ref() },
-            );
+            let [a, b, c] = corners(&seen, face);
             let (ax, ay, bx, by) = (load8(s, &a[0]), load8(s, &a[1]), load8(s, &b[0]), load8(s, &b[1]));
             let (cx, cy) = (load8(s, &c[0]), load8(s, &c[1]));
             // As in `watertight`, which is asked where an edge function is zero.
@@ -205,13 +208,12 @@ impl<T: Real> Few<T> {
             #[inline(always)]
             || {
                 let [x, y, z] = heading.order;
-                let [a, b, c] = face.corners.map(
-                    #[inline(always)]
-                    |v| {
-                        let p = &self.vertices[v as usize];
-                        [splat8::<T, S>(s, p[x]), splat8::<T, S>(s, p[y]), splat8::<T, S>(s, p[z])]
-                    },
-                );
+                let mut corners = [[splat8::<T, S>(s, T::zero()); 3]; 3];
+                for i in 0..3 {
+                    let p = &self.vertices[face.corners[i] as usize];
+                    corners[i] = [splat8(s, p[x]), splat8(s, p[y]), splat8(s, p[z])];
+                }
+                let [a, b, c] = corners;
                 let zero = splat8::<T, S>(s, T::zero());
                 match watertight(ray.origin, ray.shear, a.into(), b.into(), c.into()) {
                     Some((inside, x)) => (inside, x.t, x.u, x.v),
@@ -219,6 +221,20 @@ impl<T: Real> Few<T> {
                 }
             },
         )
+    }
+}
+
+/// The corners of a triangle as the rays see them.
+#[inline(always)]
+fn corners<'a, T>(seen: &'a [MaybeUninit<Seen<T>>; VERTICES], face: &Face<T>) -> [&'a Seen<T>; 3] {
+    let [a, b, c] = face.corners;
+    // Sound: corners are numbers of vertices, all of which were looked at.
+    unsafe {
+        [
+            seen.get_unchecked(a as usize).assume_init_ref(),
+            seen.get_unchecked(b as usize).assume_init_ref(),
+            seen.get_unchecked(c as usize).assume_init_ref(),
+        ]
     }
 }
 

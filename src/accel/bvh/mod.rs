@@ -35,7 +35,7 @@ use std::sync::atomic::Ordering;
 pub struct Bvh<T> {
     nodes: Vec<Node<T>>,
     blocks: Vec<Block<T>>,
-    /// What batches of rays are traced through instead, if it is not empty.
+    /// What rays of a batch that have little in common are traced through instead, if it is not empty.
     few: few::Few<T>,
     bounds: [[T; 3]; 2],
     faces: usize,
@@ -146,12 +146,10 @@ impl<T: Real> Bvh<T> {
         rays: impl Fn(usize) -> Ray<T>,
         mut answer: impl FnMut(usize, Hit<T>),
     ) {
-        if !self.few.is_empty() {
-            self.few.trace::<ANY, S>(s, &self.bounds, count, rays, answer);
-            return;
-        }
         let mut apart: Vec<u32> = Vec::new();
-        let whole = count - count % packet::SIZE;
+        // Few triangles stop any ray sooner than packets do.
+        let packets = if ANY && !self.few.is_empty() { 0 } else { count / packet::SIZE };
+        let whole = packets * packet::SIZE;
         for first in (0..whole).step_by(packet::SIZE) {
             let packet = packet::gather(
                 s,
@@ -170,7 +168,11 @@ impl<T: Real> Bvh<T> {
             }
         }
         apart.extend((whole..count).map(|i| i as u32));
-        stream::trace::<ANY, T, S, _, _>(s, self, rays, &apart, answer);
+        if self.few.is_empty() {
+            stream::trace::<ANY, T, S, _, _>(s, self, rays, &apart, answer);
+        } else {
+            self.few.trace::<ANY, S>(s, &self.bounds, rays, &apart, answer);
+        }
     }
 
     /// The exact bounds of all triangles: zeros if there are none.
