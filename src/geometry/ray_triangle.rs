@@ -201,6 +201,8 @@ pub fn ray_triangle<T: Real>(
             let k = permutation(dominant_axis(d.to_array()));
             let (p, q) = (in_order(k, d), T::one() / in_order(k, d).z);
             let shear = Vec3::new(p.x * q, p.y * q, q);
+            // No closure: it would be called outside the dispatch.
+            #[allow(clippy::manual_map)]
             match watertight(in_order(k, o), shear, in_order(k, a), in_order(k, b), in_order(k, c)) {
                 Some((_, crossing)) => Some(crossing),
                 None => None,

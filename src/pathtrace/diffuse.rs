@@ -201,7 +201,7 @@ fn ask_lights<T: Real, S: Simd>(
             }
         }
     }
-    let count = if all { lighting.len() } else { 1 };
+    let count = if all { lighting.sources() } else { 1 };
     for k in 0..count {
         if all {
             sources = [k; 8];

@@ -91,7 +91,7 @@ impl<T: Real> Tracer<T> for Distribution<'_, T> {
     #[inline(always)]
     fn radiance<S: Simd>(&self, s: S, mut ray: Ray<T>, sample: Sample) -> Vec3<T> {
         let stage = &self.stage;
-        let sources = stage.lighting.len();
+        let sources = stage.lighting.sources();
         let (mut sum, mut carried) = (Vec3::splat(T::zero()), Vec3::splat(T::one()));
         let mut pdf = T::INFINITY;
         for depth in 0..=self.options.max_depth {

@@ -83,7 +83,7 @@ impl<T: Real> Lighting<T> {
     }
 
     #[inline(always)]
-    pub fn len(&self) -> usize {
+    pub fn sources(&self) -> usize {
         self.count
     }
 
@@ -154,7 +154,7 @@ impl<T: Real> Surfaces<'_, T> {
         if face < lighting.faces {
             let face =
                 if lighting.faces > 1 { self.emitters.face(face) } else { self.emitters.draw(pick.to_f64()) };
-            return self.from_face(lighting, face, point, u);
+            return self.on_face(lighting, face, point, u);
         }
         let draw = self.environment?.sample(u);
         let value = draw.radiance * (T::one() / draw.pdf);
@@ -164,7 +164,7 @@ impl<T: Real> Surfaces<'_, T> {
 
     /// Light from one emitting face.
     #[inline(always)]
-    fn from_face(&self, lighting: &Lighting<T>, face: usize, from: Vec3<T>, u: [T; 2]) -> Option<Arrival<T>> {
+    fn on_face(&self, lighting: &Lighting<T>, face: usize, from: Vec3<T>, u: [T; 2]) -> Option<Arrival<T>> {
         let [a, b, c] = self.corners(face);
         let [v, w] = square_to_triangle(u, Method::Fold);
         let point = a * (T::one() - v - w) + b * v + c * w;

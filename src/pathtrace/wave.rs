@@ -180,7 +180,7 @@ impl<T: Real> Tracer<'_, T> {
                 }
                 if self.diffuse[row] { wave.diffuse.push(i as u32) } else { wave.other.push(i as u32) }
             } else if hit.t == T::INFINITY {
-                let arrives = self.from_beyond(origin, direction, path.pdf, before);
+                let arrives = self.beyond(origin, direction, path.pdf, before);
                 *sum = *sum + path.carried.times(arrives);
             }
         }
@@ -188,7 +188,7 @@ impl<T: Real> Tracer<'_, T> {
 
     /// Radiance from where nothing is, weighed.
     #[inline(always)]
-    fn from_beyond(&self, origin: Vec3<T>, direction: Vec3<T>, pdf: T, before: u32) -> Vec3<T> {
+    fn beyond(&self, origin: Vec3<T>, direction: Vec3<T>, pdf: T, before: u32) -> Vec3<T> {
         let mut sum = self.scene.background;
         if let Some(sky) = self.scene.environment {
             let (radiance, other) = sky.eval_and_pdf(direction);
@@ -226,7 +226,7 @@ impl<T: Real> Tracer<'_, T> {
     #[inline(always)]
     fn ask_lights(&self, wave: &mut Wave<T>, spot: &Spot<T>, path: Path<T>, depth: u32) {
         let lighting = self.lighting;
-        if lighting.len() == 0 || spot.bsdf.is_smooth() {
+        if lighting.sources() == 0 || spot.bsdf.is_smooth() {
             return;
         }
         let (key, sample) = (wave.keys[path.slot as usize], wave.samples[path.slot as usize]);
@@ -234,7 +234,7 @@ impl<T: Real> Tracer<'_, T> {
         // Where rays to the side that is seen start.
         let from = spot.point + spot.normal * self.scene.offset;
         let (range, chance) = if lighting.asks_all(depth) {
-            (0..lighting.len(), T::one())
+            (0..lighting.sources(), T::one())
         } else {
             let Some((source, chance)) = lighting.draw(from, choice) else { return };
             (source..source + 1, chance)

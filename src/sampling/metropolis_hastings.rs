@@ -74,7 +74,7 @@ pub(super) fn run<T: Real>(
                 if number >= record.burn_in {
                     let after = number - record.burn_in + 1;
                     moved[0] += u64::from(went);
-                    if after % record.thin == 0 {
+                    if after.is_multiple_of(record.thin) {
                         rows.data[after / record.thin - 1] = state[0];
                     }
                 }

@@ -57,7 +57,7 @@ fn throw<const D: usize>(
     let mut rounds = 0usize;
     while !front.is_empty() {
         rounds += 1;
-        if rounds % PATIENCE == 0 && stop.load(Ordering::Relaxed) {
+        if rounds.is_multiple_of(PATIENCE) && stop.load(Ordering::Relaxed) {
             break;
         }
         let at = ((uniform() * front.len() as f64) as usize).min(front.len() - 1);

@@ -186,6 +186,8 @@ fn body<T: Real>(
                 }
                 None => (sobol(aligned as u32, &table[d]), 0),
             };
+            // No closure: it would be called outside the dispatch.
+            #[allow(clippy::manual_map)]
             let scramble = match scrambles {
                 Some(s) => Some(s[d]),
                 None => None,

@@ -52,9 +52,9 @@ pub fn rotate<T: Real>(q: Vec4<T>, v: Vec3<T>) -> Vec3<T> {
 #[inline(always)]
 pub fn slerp<T: Real>(a: Vec4<T>, b: Vec4<T>, t: T, shortest: bool) -> Vec4<T> {
     let one = T::one();
-    // One, and NaN where there is no quaternion.
-    let lengths = a.dot(a) * b.dot(b);
-    let a = a * (lengths / lengths);
+    // NaN where there is no quaternion: neither has a length of zero.
+    let defined = a.dot(a) * b.dot(b) > T::zero();
+    let a = if defined { a } else { a * T::NAN };
     let cosine = a.dot(b);
     let b = if shortest && cosine < T::zero() { -b } else { b };
     if shortest || !(cosine < T::zero()) {

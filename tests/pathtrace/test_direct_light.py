@@ -74,7 +74,7 @@ def test_mirrors_see_the_light_past_the_edge():
     bvh = half_plane(1.0, 0.0)
     got = sl.pathtrace.direct_light(bvh, LAMP, points, UP, [1.0] * 3, 1.0, 0.4, wo=wo, samples=4096)
     u = sl.sampling.sobol(1 << 14, 2)
-    wi, distance, pdf = sl.light.rect_sample(LAMP, points[:, None], u)
+    wi, distance, pdf = sl.light.light_sample(LAMP, points[:, None], u)
     clear = ~bvh.any_hit(points[:, None] + 1e-6 * UP, wi, t_max=distance)
     to_local = [0, 2, 1]
     f = sl.brdf.metallic_roughness(wi[..., to_local], wo[to_local], [1.0] * 3, 1.0, 0.4)

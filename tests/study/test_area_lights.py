@@ -11,8 +11,9 @@ FAST = {"size": (48, 32), "rounds": 1, "patience": 0.0, "causes": False, "cache"
 def test_transformed_cosines_are_near_the_truth(scene):
     result = study.run("area lights", scene, **FAST)
     error = {(r.setting, r.view): r.error.value for r in result.records}
-    for view in ("from above", "grazing"):
-        assert error["ltc", view] < 0.03
+    # At grazing angles lobes are wider to the sides than any transformed cosine about the same plane.
+    for view, bound in (("from above", 0.01), ("grazing", 0.08)):
+        assert error["ltc", view] < bound
         # Noise falls with samples, whose bias is none.
         assert error["samples(samples=256)", view] < 0.5 * error["samples(samples=4)", view]
 

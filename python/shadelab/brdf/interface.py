@@ -284,8 +284,8 @@ def fresnel(
     --------
     >>> fresnel([1.0, 0.5, 0.0]).round(4)
     array([0.04  , 0.0892, 1.    ])
-    >>> fresnel(1.0, 0.2, 3.9).round(4)
-    array(0.9514)
+    >>> fresnel([1.0], 0.2, 3.9).round(4)
+    array([0.952])
     """
     if k is None:
         given: dict[str, tuple[ArrayLike, int]] = {"cos_theta": (cos_theta, 0)}
@@ -338,8 +338,8 @@ def fresnel_average(
 
     Examples
     --------
-    >>> fresnel_average([1.5, 1 / 1.5]).round(4), fresnel_average(f0=0.04).round(4)
-    (array([0.0918, 0.5963]), array(0.0857))
+    >>> fresnel_average([1.5, 1 / 1.5]).round(4), fresnel_average(f0=[0.04]).round(4)
+    (array([0.0918, 0.5963]), array([0.0857]))
     """
     if (eta is None) == (f0 is None):
         raise ValueError("eta: expected either an index or f0")

@@ -215,7 +215,7 @@ class RoughConductor(_Rough):
     Examples
     --------
     >>> RoughConductor(0.5).eval([0, 0, 1], [0, 0, 1]).round(4)
-    array([0.3035, 0.1967, 0.1616])
+    array([0.3031, 0.1972, 0.1625])
     """
 
     alpha: Any = parameter(0.1, 0, high=1.0, above=0.0)
@@ -326,7 +326,7 @@ class OrenNayar(Model):
     Examples
     --------
     >>> OrenNayar(0.5, 0.5, form="qualitative").eval([0, 0, 1], [0, 0, 1]).round(4)
-    array([0.1248, 0.1248, 0.1248])
+    array([0.1249, 0.1249, 0.1249])
     """
 
     albedo: Any = color((0.8, 0.8, 0.8))

@@ -163,8 +163,8 @@ def square_to_cone(u: ArrayLike, angle: ArrayLike, method: DiskMethod = "concent
     Examples
     --------
     >>> square_to_cone([[0.5, 0.5], [0.75, 0.5]], 0.02).round(6)
-    array([[0.      , 0.      , 1.      ],
-           [0.01    , 0.      , 0.99995 ]])
+    array([[0.     , 0.     , 1.     ],
+           [0.01   , 0.     , 0.99995]])
     """
     _arrays.choice("method", method, ("concentric", "polar"))
     return _arrays.elementwise(_kernels.square_to_cone, {"u": (u, 2)}, [3], method, knobs={"angle": angle})[0]

@@ -7,7 +7,7 @@ file in `questions/`; `stability` is the table of accuracy at the extremes.
 
 >>> from shadelab import study
 >>> study.questions()
-['acceleration', 'pixel filters', 'ray sphere', 'ray triangle', 'samplers', 'soft shadows']
+['acceleration', 'area lights', ..., 'soft shadows']
 """
 
 from __future__ import annotations
