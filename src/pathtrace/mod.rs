@@ -14,6 +14,7 @@ pub mod aov;
 pub mod camera;
 mod diffuse;
 pub mod direct_light;
+#[cfg_attr(not(feature = "python"), allow(dead_code))] // asked for by Python alone
 pub mod distribution;
 mod draws;
 mod emitters;
@@ -22,9 +23,11 @@ pub mod filter;
 mod lighting;
 pub mod path_trace;
 pub mod ray_cast;
+#[cfg_attr(not(feature = "python"), allow(dead_code))] // asked for by Python alone
 pub(crate) mod recursion;
 mod surface;
 mod wave;
+#[cfg_attr(not(feature = "python"), allow(dead_code))] // asked for by Python alone
 pub mod whitted;
 
 use crate::accel::Ray;

@@ -41,6 +41,8 @@ class World:
     """The scene and its hierarchy at time 0, refitted at others."""
 
     def __init__(self, scene: Scene, bvh: BVH | None, dtype: np.dtype[Any]) -> None:
+        if not callable(getattr(scene, "flatten", None)) or isinstance(scene, np.ndarray):
+            raise TypeError(f"scene: expected a Scene, got {type(scene).__name__}")
         self.scene, self.dtype = scene, dtype
         self.arrays = scene.flatten(dtype)
         if bvh is None:

@@ -9,6 +9,7 @@
 //! E. Heitz, J. Dupuy, S. Hill, D. Neubelt, *Real-time polygonal-light shading with linearly transformed cosines*, 2016;
 //! S. Hill, E. Heitz, *LTC Fresnel approximation*, 2016.
 
+#[cfg_attr(not(feature = "python"), allow(dead_code))] // asked for by Python alone
 pub(crate) mod fit;
 
 use super::Light;
