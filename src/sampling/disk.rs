@@ -6,7 +6,7 @@
 //!
 //! P. Shirley, K. Chiu, *A low distortion map between disk and square*, 1997.
 
-use super::in_square;
+use super::{below_one, in_square};
 use crate::math;
 use crate::real::Real;
 
@@ -24,7 +24,11 @@ pub(super) fn point_and_depth<T: Real>(u: [T; 2], method: Method) -> ([T; 2], T)
         Method::Concentric => {
             // Distances from the square's border, exact near it; radius with a sign, so that a wedge and its mirror
             // image share the formula.
-            let border = u.map(|u| two * T::select(u > T::of(0.5), one - u, u));
+            let half = T::of(0.5);
+            let border = [
+                two * T::select(u[0] > half, one - u[0], u[0]),
+                two * T::select(u[1] > half, one - u[1], u[1]),
+            ];
             let [a, b] = [two * u[0] - one, two * u[1] - one];
             // Choices, not branches: which wedge is chance.
             let wide = !(border[0] >= border[1]);
@@ -71,7 +75,7 @@ pub fn disk_to_square<T: Real>(p: [T; 2], method: Method) -> [T; 2] {
             [squared, if turn < T::zero() { turn + one } else { turn }]
         }
     };
-    u.map(|u| if u >= one { one.next_down() } else { u })
+    below_one(u)
 }
 
 /// The density of the points, per area; the rim counts as inside even where rounding puts a point beyond it.

@@ -52,8 +52,17 @@ use crate::real::Real;
 /// A point of the closed unit square as it is; NaN beyond it, where no warp holds.
 #[inline(always)]
 fn in_square<T: Real>(u: [T; 2]) -> [T; 2] {
-    let unit = T::zero()..=T::one();
-    if unit.contains(&u[0]) && unit.contains(&u[1]) { u } else { [T::NAN; 2] }
+    // Comparisons by hand: methods of the standard library would be called outside the dispatch.
+    let (zero, one) = (T::zero(), T::one());
+    let inside = (u[0] >= zero) & (u[0] <= one) & (u[1] >= zero) & (u[1] <= one);
+    [T::select(inside, u[0], T::NAN), T::select(inside, u[1], T::NAN)]
+}
+
+/// Coordinates that rounding brought to one, just below it.
+#[inline(always)]
+fn below_one<T: Real>(u: [T; 2]) -> [T; 2] {
+    let (one, last) = (T::one(), T::one().next_down());
+    [T::select(u[0] >= one, last, u[0]), T::select(u[1] >= one, last, u[1])]
 }
 
 /// `f(i, row)` for every row `i` of `width` columns.

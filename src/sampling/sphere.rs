@@ -3,7 +3,7 @@
 //!
 //! Archimedes, *On the Sphere and Cylinder*; P. Shirley, *Nonuniform random point sets via warping*, 1992.
 
-use super::in_square;
+use super::{below_one, in_square};
 use crate::math;
 use crate::real::Real;
 use crate::vec::Vec3;
@@ -28,7 +28,7 @@ pub fn sphere_to_square<T: Real>(d: Vec3<T>) -> [T; 2] {
     let u = if d.z > T::zero() { half * squared / (one + d.z) } else { half * (one - d.z) };
     let turn = math::atan2(d.y, d.x) / (T::of(2.0) * T::PI);
     let v = if turn < T::zero() { turn + one } else { turn };
-    [u, v].map(|u| if u >= one { one.next_down() } else { u })
+    below_one([u, v])
 }
 
 /// The density per solid angle, 1 / 4π everywhere.

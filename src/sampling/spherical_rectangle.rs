@@ -14,6 +14,7 @@
 //! C. Ureña, M. Fajardo, A. King, *An area-preserving parametrization for spherical rectangles*, 2013; A. van Oosterom,
 //! J. Strackee, *The solid angle of a plane triangle*, 1983.
 
+use super::below_one;
 use crate::math;
 use crate::math::exact::{exponent, largest, scaled};
 use crate::real::{Lanes, Real};
@@ -140,7 +141,6 @@ impl<T: Real> SphericalRectangle<T> {
     /// The inverse of [`SphericalRectangle::sample`] for unit directions towards the rectangle, in [0, 1).
     #[inline(always)]
     pub fn invert(&self, direction: Vec3<T>) -> [T; 2] {
-        let one = T::one();
         let [x, y] = self.meet(direction);
         let (x, y) = (clamp(x, self.x), clamp(y, self.y));
         let height = self.y[1] - self.y[0];
@@ -151,7 +151,7 @@ impl<T: Real> SphericalRectangle<T> {
         let which = if self.y[0] + self.y[1] > T::zero() { 0 } else { 1 };
         let span = c1[which] - c0[which];
         let v = if span == T::zero() { span } else { (c[which] - c0[which]) / span };
-        [u, v].map(|u| if u >= one { one.next_down() } else { u })
+        below_one([u, v])
     }
     /// The density per solid angle of a unit direction: one over the rectangle's towards it, else zero. A few rounding
     /// units about the edges count as inside.

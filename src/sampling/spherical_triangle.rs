@@ -10,6 +10,7 @@
 //! J. Arvo, *Stratified sampling of spherical triangles*, 1995; A. van Oosterom, J. Strackee, *The solid angle of a plane
 //! triangle*, 1983.
 
+use super::below_one;
 use crate::math;
 use crate::math::exact::{exponent, largest, scaled};
 use crate::real::{Lanes, Real};
@@ -129,7 +130,7 @@ impl<T: Real> SphericalTriangle<T> {
         let full = (self.on_side(up / size, down / size) + -self.ab).length_squared();
         let u = area / self.solid_angle;
         let v = if full > zero { step.length_squared() / full } else { zero };
-        [u, v].map(|u| if u >= one { one.next_down() } else { u })
+        below_one([u, v])
     }
     /// The density per solid angle of a unit direction: one over the triangle's within it, else zero. A few rounding units
     /// about the sides count as inside.

@@ -5,7 +5,7 @@
 //! E. Heitz, *A low-distortion map between triangle and square*, 2019; P. Shirley, C. Wang, K. Zimmerman, *Monte Carlo
 //! techniques for direct lighting calculations*, 1996 (roots).
 
-use super::in_square;
+use super::{below_one, in_square};
 use crate::real::Real;
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -40,7 +40,7 @@ pub fn triangle_to_square<T: Real>([u, v]: [T; 2], method: Method) -> [T; 2] {
             [root * root, if root == T::zero() { T::zero() } else { v / root }]
         }
     };
-    square.map(|x| if x >= one { one.next_down() } else { x })
+    below_one(square)
 }
 
 /// The density of the barycentrics: two in the triangle. Per area of a triangle in space it is one over its area.
