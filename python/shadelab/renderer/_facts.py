@@ -1,0 +1,161 @@
+"""What a plan asks about a scene: bounds, whether anything can shade anything, what a light reaches."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from .. import _arrays, light, raster
+
+_RESOLUTIONS = (256, 512, 1024, 2048)
+
+
+@dataclass(frozen=True)
+class Facts:
+    """What a plan asks about a scene, computed once."""
+
+    positions: NDArray[np.float64]
+    faces: NDArray[np.int32]
+    eye: NDArray[np.float64]
+    pixel: float
+    """Size of a pixel at unit distance."""
+    nearest: float
+    """Least distance of the scene's bounds from the eye."""
+    extent: float
+    """Diagonal of the scene's bounds."""
+    unshadowed: str
+    """Why nothing in the scene can shade anything else; empty if something can."""
+
+
+def facts_of(scene: Any, size: tuple[int, int]) -> Facts:
+    arrays = scene.flatten(np.float32)
+    positions, faces = arrays.positions.astype(np.float64), arrays.faces
+    eye = np.asarray(scene.camera.eye, np.float64)
+    used = positions[np.unique(faces)] if len(faces) else np.zeros((1, 3))
+    low, high = used.min(0), used.max(0)
+    nearest = float(np.linalg.norm(np.maximum(np.maximum(low - eye, eye - high), 0.0)))
+    pixel = 2.0 * math.tan(float(scene.camera.fov_y) / 2.0) / size[1]
+    extent = float(np.linalg.norm(high - low))
+    if not len(faces):
+        reason = "the scene has no surfaces"
+    elif _is_flat(used, extent):
+        reason = "all surfaces lie in one plane"
+    elif _is_convex(positions, faces, eye, extent):
+        reason = "the only body is convex, and cannot shade itself"
+    else:
+        reason = ""
+    return Facts(positions, faces, eye, pixel, nearest, extent, reason)
+
+
+def _is_flat(points: NDArray[np.float64], extent: float) -> bool:
+    centred = points - points.mean(0)
+    normal = np.linalg.eigh(centred.T @ centred)[1][:, 0]
+    return bool(np.abs(centred @ normal).max() <= 1e-6 * extent)
+
+
+def _is_convex(
+    positions: NDArray[np.float64], faces: NDArray[np.int32], eye: NDArray[np.float64], extent: float
+) -> bool:
+    """Whether the faces form one closed convex surface, seen from outside.
+
+    A closed surface that is convex at every edge consists of convex bodies, each of Euler characteristic 2.
+    """
+    if not 4 <= len(faces) <= 200_000:
+        return False
+    # Vertices that were split for normals or texture coordinates are one.
+    points, welded = np.unique(positions, axis=0, return_inverse=True)
+    f = welded.reshape(-1)[faces]
+    start, end = f.reshape(-1), np.roll(f, -1, axis=1).reshape(-1)
+    opposite = np.roll(f, -2, axis=1).reshape(-1)
+    key, reverse = start * len(points) + end, end * len(points) + start
+    order = np.argsort(key)
+    at = np.searchsorted(key[order], reverse)
+    if len(np.unique(key)) != len(key) or (at == len(key)).any() or (key[order[at]] != reverse).any():
+        return False
+    if len(np.unique(f)) - len(key) // 2 + len(f) != 2:
+        return False
+    normals = np.cross(points[f[:, 1]] - points[f[:, 0]], points[f[:, 2]] - points[f[:, 0]])
+    normals /= np.maximum(np.linalg.norm(normals, axis=-1, keepdims=True), 1e-300)
+    across = points[opposite[order[at]]] - points[start]
+    rises = np.einsum("ij,ij->i", across, np.repeat(normals, 3, axis=0))
+    outside = np.einsum("ij,ij->i", eye - points[f[:, 0]], normals) > 0
+    return bool(rises.max() <= 1e-6 * extent and outside.any())
+
+
+def brightness(lamp: Any) -> float:
+    emitted = next(getattr(lamp, n) for n in ("radiance", "intensity", "irradiance") if hasattr(lamp, n))
+    return float(np.max(emitted))
+
+
+def rect_depths(lamp: light.RectLight, positions: NDArray[np.float64]) -> NDArray[np.float64]:
+    axis = np.cross(lamp.edge_u, lamp.edge_v)
+    return np.asarray((positions - np.asarray(lamp.center)) @ (axis / np.linalg.norm(axis)))
+
+
+def unlit(lamp: Any, facts: Facts) -> str:
+    """Why a light reaches nothing; empty if it may."""
+    if brightness(lamp) == 0.0:
+        return "it emits nothing"
+    if isinstance(lamp, light.RectLight) and not lamp.two_sided:
+        depths = rect_depths(lamp, facts.positions[np.unique(facts.faces)])
+        if depths.max(initial=-math.inf) <= 1e-6 * facts.extent:
+            return "it faces away from every surface"
+    return ""
+
+
+def beyond_one_map(lamp: Any, facts: Facts) -> str:
+    """Why one shadow map cannot see what a light shines on; empty if it can."""
+    used = facts.positions[np.unique(facts.faces)]
+    if isinstance(lamp, light.RectLight):
+        if lamp.two_sided and rect_depths(lamp, used).min() < -1e-6 * facts.extent:
+            return "the light shines to both sides, and a map sees one"
+    elif isinstance(lamp, light.PointLight):
+        # Whether the bounds' corners lie in the cone of a map towards their middle.
+        low, high = used.min(0), used.max(0)
+        corners = np.array(np.meshgrid(*zip(low, high, strict=True), indexing="ij")).reshape(3, -1).T
+        away, axis = corners - lamp.position, (low + high) / 2 - lamp.position
+        along, length = away @ axis, np.linalg.norm(away, axis=-1) * np.linalg.norm(axis)
+        if (along <= length * math.cos(math.radians(65.0))).any():
+            return "the light stands close to or within the scene, and one map cannot see all around"
+    return ""
+
+
+def widest_penumbra(lamp: light.RectLight, facts: Facts) -> float:
+    """A bound by similar triangles: the nearest blocker over the farthest receiver."""
+    depths = rect_depths(lamp, facts.positions[np.unique(facts.faces)])
+    if depths.min() <= 0.0:
+        return math.inf
+    side = max(float(np.linalg.norm(lamp.edge_u)), float(np.linalg.norm(lamp.edge_v)))
+    return side * float(depths.max() / depths.min() - 1.0)
+
+
+def resolution_for(facts: Facts) -> int:
+    """The least resolution whose texels are no larger than a pixel at the scene's middle."""
+    distance = facts.nearest + facts.extent / 2
+    texels = facts.extent / max(distance * facts.pixel, 1e-30)
+    return next((r for r in _RESOLUTIONS if r >= texels), _RESOLUTIONS[-1])
+
+
+def check_scene(scene: Any) -> None:
+    from ..scene import Scene
+
+    if not isinstance(scene, Scene):
+        raise TypeError(f"scene: expected a Scene, got {type(scene).__name__}")
+
+
+def checked_size(size: Any) -> tuple[int, int]:
+    try:
+        width, height = size
+    except (TypeError, ValueError):
+        kind: type[Exception] = TypeError if np.ndim(size) == 0 else ValueError
+        raise kind(f"size: expected (width, height), got {size!r}") from None
+    return _arrays.count("size", width, 1, raster.MAX_SIZE), _arrays.count("size", height, 1, raster.MAX_SIZE)
+
+
+def corners_of(lamp: light.RectLight) -> list[NDArray[np.float64]]:
+    center, u, v = (np.asarray(x, np.float64) for x in (lamp.center, lamp.edge_u, lamp.edge_v))
+    return [center + (a * u + b * v) / 2 for a in (-1, 1) for b in (-1, 1)]

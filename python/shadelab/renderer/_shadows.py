@@ -1,0 +1,75 @@
+"""How the shadow of a light is found."""
+
+from __future__ import annotations
+
+import math
+from typing import Any
+
+from .. import _arrays, light
+from ._facts import Facts, beyond_one_map, resolution_for, widest_penumbra
+from .passes import LeftOut, Pass
+
+_TECHNIQUES = ("hard", "pcf", "pcss", "ray_traced")
+
+
+def picked(evidence: Any, max_error: float | None, budget_ms: float | None) -> tuple[str, dict[str, Any], str]:
+    """Technique, settings and reason, as a study measured them."""
+    bounds = {"max_error": max_error, "budget_ms": budget_ms}
+    asked = {k: _arrays.number(k, v, above=0.0) for k, v in bounds.items() if v is not None}
+    if not asked:
+        raise ValueError("evidence: expected max_error or budget_ms beside it")
+    if not callable(getattr(evidence, "pick", None)):
+        raise TypeError(f"evidence: expected the result of a study, got {type(evidence).__name__}")
+    choice = evidence.pick(**asked)
+    if choice is None:
+        raise ValueError(f"evidence: nothing that was measured keeps {asked}")
+    if choice.technique not in _TECHNIQUES:
+        raise ValueError(f"evidence: expected a technique among {', '.join(_TECHNIQUES)}, got {choice.technique!r}")
+    wanted = " and ".join(f"{k} {v:g}" for k, v in asked.items())
+    reason = f"measured: error {choice.error:.3g} in {choice.ms:.3g} ms, the choice for {wanted}"
+    return choice.technique, dict(choice.knobs), reason
+
+
+def shadow_passes(
+    lamp: Any, suffix: str, facts: Facts, measured: tuple[str, dict[str, Any], str] | None
+) -> tuple[list[Pass], list[LeftOut]]:
+    """How the shadow of one light is found, for a light that reaches something."""
+    if facts.unshadowed:
+        return [], [LeftOut(f"shadow{suffix}", facts.unshadowed)]
+    left_out: list[LeftOut] = []
+    settings: dict[str, Any] = {}
+    width, footprint = 0.0, facts.nearest * facts.pixel
+    if isinstance(lamp, light.RectLight):
+        width = widest_penumbra(lamp, facts)
+    if not isinstance(lamp, light.RectLight):
+        technique, reason = "hard", "the light has no extent: its shadows have no penumbra"
+        left_out.append(LeftOut(f"penumbra{suffix}", "no area light: a hard shadow suffices"))
+    elif width < footprint:
+        technique = "hard"
+        reason = f"penumbrae are at most {width:.2g} wide, less than a pixel ({footprint:.2g})"
+        left_out.append(LeftOut(f"penumbra{suffix}", "narrower than a pixel: a hard shadow suffices"))
+    elif measured is not None:
+        technique, settings, reason = measured
+    else:
+        technique, settings = "pcss", {"blocker_samples": 16, "filter_samples": 32}
+        reason = "an area light, with penumbrae as wide as " + (
+            f"{width / footprint:.0f} pixels" if math.isfinite(width) and footprint > 0 else "the light itself"
+        )
+
+    settings = dict(settings)
+    resolution = settings.pop("resolution", None)
+    beyond = beyond_one_map(lamp, facts) if technique != "ray_traced" else ""
+    if beyond:
+        samples = 16 if isinstance(lamp, light.RectLight) else 1
+        technique, settings, reason = "ray_traced", {"samples": samples}, beyond
+    if technique == "ray_traced":
+        left_out.append(LeftOut(f"shadow map{suffix}", "rays need none"))
+        return [Pass(f"shadow{suffix}", reason, {"technique": technique, **settings})], left_out
+    if resolution is None:
+        resolution, why = resolution_for(facts), "texels no larger than pixels where the resolution allows"
+    else:
+        why = "the resolution that was measured"
+    return [
+        Pass(f"shadow map{suffix}", f"what the light sees; {why}", {"resolution": int(resolution)}),
+        Pass(f"shadow{suffix}", reason, {"technique": technique, **settings}),
+    ], left_out

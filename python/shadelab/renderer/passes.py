@@ -1,0 +1,71 @@
+"""Passes and plans: what a frame is made of, in order, and why."""
+
+from __future__ import annotations
+
+import html
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+from typing import Any
+
+__all__ = ["LeftOut", "Pass", "Plan"]
+
+
+@dataclass(frozen=True)
+class Pass:
+    """One step of a frame: what it does, why the scene requires it, and with which settings."""
+
+    name: str
+    reason: str
+    settings: Mapping[str, Any] = field(default_factory=dict)
+
+
+@dataclass(frozen=True)
+class LeftOut:
+    """A pass that the scene does not require, and why."""
+
+    name: str
+    reason: str
+
+
+@dataclass(frozen=True)
+class Plan:
+    """The passes of a frame in order, and what was left out."""
+
+    passes: tuple[Pass, ...]
+    left_out: tuple[LeftOut, ...]
+    size: tuple[int, int]
+    lights: int | None = None
+    """How many lights the scene has that it was made for; None if it does not say."""
+
+    def find(self, name: str) -> Pass | None:
+        """The pass of a name, None if it was left out.
+
+        Parameters
+        ----------
+        name : str
+            As `Pass.name`.
+
+        Returns
+        -------
+        Pass or None
+        """
+        return next((p for p in self.passes if p.name == name), None)
+
+    def __str__(self) -> str:
+        width = max((len(name) for name in [p.name for p in self.passes] + [x.name for x in self.left_out]), default=0)
+        lines = [f"{self.size[0]} x {self.size[1]}, {len(self.passes)} passes"]
+        for number, p in enumerate(self.passes, 1):
+            settings = ", ".join(f"{k}={v!r}" for k, v in p.settings.items())
+            lines.append(f"{number:3}. {p.name:{width}}  {p.reason}" + (f" ({settings})" if settings else ""))
+        lines += [f"  -  {x.name:{width}}  left out: {x.reason}" for x in self.left_out]
+        return "\n".join(lines)
+
+    def _repr_html_(self) -> str:
+        rows = []
+        for number, p in enumerate(self.passes, 1):
+            settings = ", ".join(f"{k}={v!r}" for k, v in p.settings.items())
+            rows.append((str(number), p.name, p.reason, settings))
+        rows += [("–", x.name, f"left out: {x.reason}", "") for x in self.left_out]
+        body = "".join("<tr>" + "".join(f"<td>{html.escape(c)}</td>" for c in row) + "</tr>" for row in rows)
+        head = "<tr><th></th><th>pass</th><th>reason</th><th>settings</th></tr>"
+        return f"<table><thead>{head}</thead><tbody>{body}</tbody></table>"

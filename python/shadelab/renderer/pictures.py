@@ -1,0 +1,211 @@
+"""Pictures: the passes of a plan, run over a scene."""
+
+from __future__ import annotations
+
+import time
+from collections.abc import Callable
+from typing import Any
+
+import numpy as np
+
+from .. import _arrays, light, shadow
+from .._arrays import Floats
+from ..accel import BVH
+from ._buffers import Seen, above_horizon, g_buffer
+from ._facts import check_scene, checked_size
+from .frames import Frame
+from .passes import Pass, Plan
+from .plans import decided
+
+__all__ = ["render"]
+
+
+def _lit(how: Pass, lamp: Any, seen: Seen, chart: Any, bvh: BVH | None) -> Floats:
+    """The lit fraction of every receiver by the technique of a pass."""
+    knobs = dict(how.settings)
+    technique = knobs.pop("technique")
+    if technique == "ray_traced":
+        assert bvh is not None
+        return shadow.ray_traced(bvh, seen.points, seen.geometric, lamp, **knobs)
+    techniques: dict[str, Callable[..., Any]] = {"hard": shadow.hard, "pcf": shadow.pcf, "pcss": shadow.pcss}
+    return np.asarray(techniques[technique](chart, seen.points, seen.geometric, **knobs))
+
+
+class _Clock:
+    """Times passes and tells the caller how far the frame is."""
+
+    def __init__(self, total: int, tell: Callable[[int, int], object] | None) -> None:
+        self.times: dict[str, float] = {}
+        self._total, self._tell, self._since = total, tell, time.perf_counter()
+
+    def done(self, name: str) -> None:
+        now = time.perf_counter()
+        self.times[name] = now - self._since
+        self._since = now
+        if self._tell is not None:
+            self._tell(len(self.times), self._total)
+
+
+def render(
+    scene: Any,
+    plan: Plan | None = None,
+    size: tuple[int, int] | None = None,
+    *,
+    seed: int = 0,
+    progress: bool | Callable[[int, int], object] | None = None,
+) -> Frame:
+    """A picture of a scene, by the passes of a plan.
+
+    Parameters
+    ----------
+    scene : Scene
+        What is rendered, in float32.
+    plan : Plan, optional
+        The passes; by default `plan(scene, size)`.
+    size : (int, int), optional
+        Width and height in pixels; by default those of the plan, or 1280 x 720.
+    seed : int
+        Of the noise in filters and samples: the same seed gives the same bits.
+    progress : bool or callable, optional
+        True shows a bar; a callable gets (done, total) in passes.
+
+    Returns
+    -------
+    Frame
+        Radiance, G-buffer, lit fractions and the time of each pass; shows itself in Jupyter.
+
+    Raises
+    ------
+    TypeError, ValueError
+        If the plan does not fit the scene or the size, or an argument is out of range.
+
+    Notes
+    -----
+    Direct light is what would arrive with nothing in between (`shadelab.light.unshadowed`: exact for diffuse
+    reflection) times the lit fraction that the plan's technique finds, plus the background's light as if nothing
+    hid it, plus emission. No light is reflected twice. Lights themselves are not seen, though
+    `shadelab.pathtrace.path_trace` shows rectangles: the plan lists those in view as left out. Where a light is wholly
+    visible the result is that of `shadelab.pathtrace.direct_light` up to the noise of glossy reflection.
+
+    Examples
+    --------
+    >>> import shadelab as sl
+    >>> frame = sl.render(sl.scene.default(), size=(64, 36))
+    >>> frame.radiance.shape, [name for name in frame.times]  # doctest: +NORMALIZE_WHITESPACE
+    ((36, 64, 3), ['g-buffer', 'shadow map', 'shadow', 'direct light', 'ambient'])
+    """
+    check_scene(scene)
+    seed = _arrays.count("seed", seed, 0, 2**64 - 1)
+    chosen = decided(scene, checked_size((1280, 720) if size is None else size), None) if plan is None else plan
+    _check_plan(chosen, scene, size)
+    tell = _arrays.progress_callback(progress, "render")
+    clock = _Clock(len(chosen.passes), tell)
+    width, height = chosen.size
+    background = np.asarray(scene.background, np.float32)
+    lamps = list(scene.lights)
+    arrays = scene.flatten(np.float32)
+    _arrays.warn_if_coarse(arrays.positions, np.float32, 3)
+    if chosen.find("g-buffer") is None:
+        return _empty_frame(chosen, background, len(lamps), clock)
+
+    seen = g_buffer(arrays, scene.camera, chosen.size)
+    clock.done("g-buffer")
+    radiance = np.zeros_like(seen.points)
+    fractions: dict[int, Floats] = {}
+    chart, bvh = None, None
+    for p in chosen.passes[1:]:
+        kind, index = _split(p.name, lamps)
+        if kind == "bvh":
+            bvh = BVH(arrays.positions, arrays.faces)
+        elif kind == "shadow map":
+            chart = shadow.shadow_map(arrays.positions, arrays.faces, lamps[index], **p.settings, receivers=seen.points)
+        elif kind == "shadow":
+            seeded = p.settings.get("technique") != "hard" and "seed" not in p.settings
+            how = Pass(p.name, p.reason, {**p.settings, "seed": seed}) if seeded else p
+            fractions[index] = _lit(how, lamps[index], seen, chart, bvh)
+        elif kind == "direct light":
+            for i in p.settings["lights"]:
+                fraction = fractions.setdefault(i, np.ones(len(seen.points), np.float32))
+                fraction *= above_horizon(lamps[i], seen)
+                radiance += (
+                    _unshadowed(lamps[i], seen, arrays, scene.camera, p.settings["samples"], seed) * fraction[:, None]
+                )
+        elif kind == "ambient":
+            radiance += seen.base_color * background
+        elif kind == "emission":
+            radiance += arrays.emission[seen.material]
+        else:
+            raise ValueError(f"plan: there is no pass {p.name!r}")
+        clock.done(p.name)
+
+    picture = np.broadcast_to(background, (height, width, 3)).copy()
+    picture[seen.covered] = radiance
+    forward = -np.asarray(scene.camera.view())[2].astype(np.float64)
+    depth = (seen.points @ forward[:3] + forward[3]).astype(np.float32)
+    ones = np.ones(len(seen.points), np.float32)
+    lit = tuple(seen.spread(fractions.get(i, ones), 1.0) for i in range(len(lamps)))
+    return Frame(
+        picture,
+        seen.spread(depth, np.inf),
+        seen.spread(seen.points, np.nan),
+        seen.spread(seen.shading, np.nan),
+        seen.face,
+        lit,
+        clock.times,
+        chosen,
+    )
+
+
+def _check_plan(chosen: Any, scene: Any, size: Any) -> None:
+    if not isinstance(chosen, Plan):
+        raise TypeError(f"plan: expected a Plan, got {type(chosen).__name__}")
+    if size is not None and checked_size(size) != tuple(chosen.size):
+        raise ValueError(f"plan: made for another size, {tuple(chosen.size)}, than {tuple(size)}")
+    lights = len(scene.lights)
+    if chosen.lights is not None and chosen.lights != lights:
+        raise ValueError(f"plan: made for another scene, with {chosen.lights} lights instead of {lights}")
+    for p in chosen.passes:
+        wanted = p.settings.get("lights", (0,) if p.name in ("shadow map", "shadow") else ())
+        if max(wanted, default=-1) >= lights:
+            raise ValueError(f"plan: made for another scene, whose light {max(wanted)} this one does not have")
+
+
+def _split(name: str, lamps: list[Any]) -> tuple[str, int]:
+    """The kind of a pass, and the light that it is for."""
+    kind, _, last = name.rpartition(" ")
+    if not last.isdigit():
+        return name, 0
+    if int(last) >= len(lamps):
+        raise ValueError(f"plan: pass {name!r} is for a light that the scene does not have")
+    return kind, int(last)
+
+
+def _unshadowed(lamp: Any, seen: Seen, arrays: Any, camera: Any, samples: int, seed: int) -> Floats:
+    return light.unshadowed(
+        lamp,
+        seen.points,
+        seen.shading,
+        seen.base_color,
+        arrays.metallic[seen.material],
+        arrays.roughness[seen.material],
+        eye=np.asarray(camera.eye, np.float32),
+        samples=samples,
+        seed=seed,
+    )
+
+
+def _empty_frame(chosen: Plan, background: Floats, lights: int, clock: _Clock) -> Frame:
+    width, height = chosen.size
+    nothing = np.full((height, width, 3), np.nan, np.float32)
+    picture = np.broadcast_to(background, (height, width, 3)).copy()
+    clock.done("background")
+    return Frame(
+        picture,
+        np.full((height, width), np.inf, np.float32),
+        nothing,
+        nothing.copy(),
+        np.full((height, width), -1, np.int32),
+        tuple(np.ones((height, width), np.float32) for _ in range(lights)),
+        clock.times,
+        chosen,
+    )
