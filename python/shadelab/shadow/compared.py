@@ -1,0 +1,164 @@
+"""Depths compared: once, or over a filter of fixed width."""
+
+from __future__ import annotations
+
+from typing import Literal
+
+from numpy.typing import ArrayLike
+
+from .. import _arrays
+from .._arrays import Floats
+from .._kernels import shadow as _kernels
+from ._lookup import Kernel, _granted, _receivers, _result, _taps
+from .maps import ShadowMap
+
+__all__ = ["hard", "pcf"]
+
+
+def hard(
+    shadow_map: ShadowMap,
+    receivers: ArrayLike,
+    normals: ArrayLike | None = None,
+    *,
+    bias: float = 0.0,
+    slope_bias: float = 0.05,
+    normal_offset: float = 0.0,
+    receiver_plane: bool = True,
+    out: Floats | None = None,
+) -> Floats:
+    """Hard shadows: 1 where the light's centre is seen, 0 elsewhere, by one texel.
+
+    Parameters
+    ----------
+    shadow_map : ShadowMap
+        The depth that the light sees; its precision governs.
+    receivers : array_like, shape (..., 3)
+        Points in the world.
+    normals : array_like, shape (..., 3), optional
+        Unit normals of the receivers, geometric ones if there is a choice. Leading axes broadcast.
+    bias : float
+        World units of depth that a blocker must be nearer by.
+    slope_bias : float
+        Texels: a blocker must be nearer by the depth that the receiver's plane gains over them. Needs normals.
+    normal_offset : float
+        Texels that receivers are moved by along their normal, times the sine of the light's angle to it. Needs normals.
+    receiver_plane : bool
+        Compare with the receiver's tangent plane at the texel's centre rather than with its own depth. Needs normals.
+    out : ndarray, shape (...), optional
+        The array to write into.
+
+    Returns
+    -------
+    ndarray, shape (...)
+        The lit fraction, 0 or 1; 1 outside of the map and behind the light; NaN where a receiver or normal is NaN.
+
+    Raises
+    ------
+    TypeError, ValueError
+        If an argument has the wrong type or shape, or a bias is negative.
+
+    Notes
+    -----
+    Shadow edges are exact to half a texel. With `normals`, a lit plane at any angle shows no acne: the
+    comparison happens where the texel's depth was taken. Without, choose `bias`; with ``receiver_plane=False``, a
+    `slope_bias` of 0.5 covers a texel, and blockers nearer to the receiver than that detach from their shadows.
+    Cost: one texel read.
+
+    References
+    ----------
+    L. Williams, *Casting Curved Shadows on Curved Surfaces*, 1978. J. Isidoro, *Shadow Mapping: GPU-based Tips and
+    Techniques*, GDC 2006 (receiver plane). D. Holbert, *Saying "Goodbye" to Shadow Acne*, GDC 2011 (normal offset).
+
+    Examples
+    --------
+    >>> import numpy as np
+    >>> depth = np.where(np.arange(4) < 2, 2.0, np.inf)[None].repeat(4, 0)
+    >>> frame = [[1, 0, 0], [0, 0, -1], [0, -1, 0]]
+    >>> above = ShadowMap(depth, "perspective", [0, 4, 0], frame, [-1, 1, -1, 1], 2.0, 4.0)
+    >>> hard(above, [[-1.0, 0, 0], [1, 0, 0]], [0, 1, 0])
+    array([0., 1.])
+    """
+    granted = _granted(shadow_map, normals, bias, slope_bias, normal_offset, receiver_plane)
+    shape, points, n = _receivers(shadow_map, receivers, normals)
+    result, flat = _result(out, shape, points.dtype)
+    perspective = shadow_map.projection == "perspective"
+    _kernels.hard(shadow_map.depth, shadow_map._geometry(), perspective, points, n, granted, flat)
+    return result
+
+
+def pcf(
+    shadow_map: ShadowMap,
+    receivers: ArrayLike,
+    normals: ArrayLike | None = None,
+    *,
+    samples: int = 16,
+    radius: float = 1.5,
+    units: Literal["texels", "world"] = "texels",
+    kernel: Kernel = "vogel",
+    seed: int | None = 0,
+    bias: float = 0.0,
+    slope_bias: float = 0.05,
+    normal_offset: float = 0.0,
+    receiver_plane: bool = True,
+    out: Floats | None = None,
+) -> Floats:
+    """Percentage-closer filtering: the share of texels around a receiver that do not block it.
+
+    Parameters
+    ----------
+    shadow_map, receivers, normals
+        As in `hard`.
+    samples : int
+        Texels compared, at most 4096.
+    radius : float
+        Half the side of the filter.
+    units : {"texels", "world"}
+        Whether `radius` is in texels of the map, or in world units at the receiver, parallel to the map's plane.
+    kernel : {"vogel", "box", "grid"}
+        Where the samples lie: on a disk (Vogel's spiral), in a square (a lattice), or in n × n cells of a square.
+    seed : int or None
+        Each receiver turns the disk, or shifts the square's points, by random amounts that follow from the seed and its
+        place in the batch: noise instead of banding. None gives all receivers the same points.
+    bias, slope_bias, normal_offset, receiver_plane, out
+        As in `hard`.
+
+    Returns
+    -------
+    ndarray, shape (...)
+        The lit fraction, a multiple of 1 / `samples`; NaN where a receiver or normal is NaN.
+
+    Raises
+    ------
+    TypeError, ValueError
+        If an argument has the wrong type, shape or range.
+
+    Notes
+    -----
+    A penumbra of one width everywhere: right for antialiasing, wrong for an area light, whose shadow should harden at
+    contact. As `radius` goes to 0 the result is that of `hard`. With normals the filter follows the receiver's tangent
+    plane, so that wide filters need no more bias than narrow ones. Cost: `samples` texel reads.
+
+    References
+    ----------
+    W. Reeves, D. Salesin, R. Cook, *Rendering Antialiased Shadows with Depth Maps*, 1987. H. Vogel, *A better way to
+    construct the sunflower head*, 1979.
+
+    Examples
+    --------
+    >>> import numpy as np
+    >>> depth = np.where(np.arange(64) < 32, 2.0, np.inf)[None].repeat(64, 0)
+    >>> frame = [[1, 0, 0], [0, 0, -1], [0, -1, 0]]
+    >>> above = ShadowMap(depth, "perspective", [0, 4, 0], frame, [-1, 1, -1, 1], 2.0, 4.0)
+    >>> pcf(above, [[-1.0, 0, 0], [0, 0, 0], [1, 0, 0]], [0, 1, 0], radius=4, kernel="box", seed=None)
+    array([0. , 0.5, 1. ])
+    """
+    granted = _granted(shadow_map, normals, bias, slope_bias, normal_offset, receiver_plane)
+    taps = _taps("samples", kernel, samples, seed)
+    half = _arrays.number("radius", radius, 0.0)
+    texels = _arrays.choice("units", units, ("texels", "world")) == "texels"
+    shape, points, n = _receivers(shadow_map, receivers, normals)
+    result, flat = _result(out, shape, points.dtype)
+    perspective = shadow_map.projection == "perspective"
+    geometry = shadow_map._geometry()
+    _kernels.pcf(shadow_map.depth, geometry, perspective, points, n, taps, half, texels, granted, flat)
+    return result

@@ -1,0 +1,71 @@
+//! Bindings of `shadow`: what lookups share is here, a file for each of the faces.
+
+mod maps;
+mod compared;
+mod rays;
+mod soft;
+
+use crate::python::array::In;
+use crate::real::Real;
+use crate::shadow::lookup::{Bias, Map};
+use crate::shadow::pattern::{Kind, Pattern};
+use numpy::Element;
+use pyo3::exceptions::PyValueError;
+use pyo3::prelude::*;
+
+/// Origin (3), rows right, up, axis (9), window (4) and near (1) of a map.
+pub type Geometry = [f64; 17];
+/// Constant, slope, normal offset, plane.
+pub type Granted = (f64, f64, f64, bool);
+/// Kind, samples, seed.
+pub type Taps<'a> = (&'a str, usize, Option<u64>);
+
+pub fn map<'a, T: Real + Element>(depth: &'a In<'_, T>, g: &Geometry) -> PyResult<Map<'a, T>> {
+    let at = |i: usize| T::of(g[i]);
+    let three = |i: usize| [at(i), at(i + 1), at(i + 2)];
+    let frame = [three(3), three(6), three(9)];
+    let size = match depth.shape() {
+        &[height, width] => [width, height],
+        _ => return Err(PyValueError::new_err("depth: expected shape (H, W)")),
+    };
+    Map::new(depth.slice()?, size, three(0), frame, [at(12), at(13), at(14), at(15)], at(16))
+        .ok_or_else(|| PyValueError::new_err("window: expected left < right and bottom < top"))
+}
+
+pub fn bias<T: Real>((constant, slope, normal_offset, plane): Granted) -> Bias<T> {
+    Bias { constant: T::of(constant), slope: T::of(slope), normal_offset: T::of(normal_offset), plane }
+}
+
+pub fn pattern<T: Real>((kind, samples, seed): Taps<'_>) -> PyResult<Pattern<T>> {
+    let kind = match kind {
+        "vogel" => Kind::Vogel,
+        "box" => Kind::Box,
+        "grid" => Kind::Grid,
+        _ => return Err(PyValueError::new_err("kernel: unknown")),
+    };
+    Ok(Pattern::new(kind, samples, seed))
+}
+
+/// Calls `$f::<T, true>` or `$f::<T, false>`.
+macro_rules! by_projection {
+    ($perspective:expr, $t:ident, $f:ident, ($($arg:expr),*)) => {
+        if $perspective { $f::<$t, true>($($arg),*) } else { $f::<$t, false>($($arg),*) }
+    };
+}
+use by_projection;
+
+#[pymodule]
+pub mod shadow {
+    #[pymodule_export]
+    use super::compared::hard;
+    #[pymodule_export]
+    use super::compared::pcf;
+    #[pymodule_export]
+    use super::maps::shadow_map;
+    #[pymodule_export]
+    use super::maps::span;
+    #[pymodule_export]
+    use super::rays::ray_traced;
+    #[pymodule_export]
+    use super::soft::pcss;
+}

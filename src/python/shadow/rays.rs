@@ -1,0 +1,43 @@
+//! Bindings of `shadow`: rays.
+
+use crate::python::accel::Tree;
+use crate::python::array::{In, Out, run};
+use crate::real;
+use crate::real::Real;
+use crate::vec::Vec3;
+use pyo3::prelude::*;
+
+#[pyfunction]
+pub fn ray_traced(
+    py: Python<'_>,
+    tree: &Bound<'_, Tree>,
+    receivers: &Bound<'_, PyAny>,
+    normals: Option<&Bound<'_, PyAny>>,
+    ignore: Option<&Bound<'_, PyAny>>,
+    light: (&str, [[f64; 3]; 3]),
+    samples: usize,
+    seed: u64,
+    offset: f64,
+    progress: Option<Py<PyAny>>,
+    out: &Bound<'_, PyAny>,
+) -> PyResult<()> {
+    use crate::shadow::ray_traced::{Emitter, Knobs, ray_traced as kernel};
+    real!(receivers, T => {
+        let points = In::<T>::of("receivers", receivers)?;
+        let normals = normals.map(|n| In::<T>::of("normals", n)).transpose()?;
+        let ignore = ignore.map(|f| In::<i32>::of("ignore_face", f)).transpose()?;
+        let mut out = Out::<T>::of("out", out)?;
+        let (kind, vectors) = light;
+        let [a, u, v] = vectors.map(|v| Vec3::from(v.map(T::of)));
+        let emitter = match kind {
+            "rect" => Emitter::Rect { center: a, u, v },
+            "directional" => Emitter::Directional { towards: a },
+            _ => Emitter::Point { position: a },
+        };
+        let knobs = Knobs { emitter, samples, seed, offset: T::of(offset) };
+        let tree = tree.get().of::<T>()?.clone();
+        let (p, n) = (points.items()?, normals.as_ref().map(In::items).transpose()?);
+        let (ignore, out) = (ignore.as_ref().map(In::slice).transpose()?, out.slice()?);
+        run(py, progress, |watch| kernel(watch, &tree, p, n, ignore, &knobs, out))
+    })
+}
