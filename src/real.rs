@@ -21,6 +21,8 @@ pub trait Lanes:
 
     /// `x` in every lane. The receiver only lends its SIMD token.
     fn like(self, x: Self::Elem) -> Self;
+    /// Its first lane.
+    fn first(self) -> Self::Elem;
     fn abs(self) -> Self;
     fn sqrt(self) -> Self;
     fn min(self, other: Self) -> Self;
@@ -108,6 +110,10 @@ macro_rules! scalar {
             #[inline(always)]
             fn like(self, x: $t) -> $t {
                 x
+            }
+            #[inline(always)]
+            fn first(self) -> $t {
+                self
             }
             #[inline(always)]
             fn abs(self) -> $t {
@@ -239,6 +245,10 @@ macro_rules! vector {
             #[inline(always)]
             fn like(self, x: $t) -> Self {
                 SimdBase::splat(self.simd, x)
+            }
+            #[inline(always)]
+            fn first(self) -> $t {
+                self.as_slice()[0]
             }
             #[inline(always)]
             fn abs(self) -> Self {

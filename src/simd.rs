@@ -6,6 +6,8 @@
 //!
 //! `SHADELAB_SIMD=baseline|avx2` and [`force`] choose a level; a level that the machine lacks is refused.
 
+pub mod columns;
+
 use crate::real::Real;
 use std::sync::atomic::{AtomicU8, Ordering};
 

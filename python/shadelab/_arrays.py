@@ -132,12 +132,11 @@ def indices(name: str, value: ArrayLike, n: int | None = None, below: int | None
     return np.require(given, dtype=np.int32, requirements=["C", "A"])
 
 
-def broadcast(
-    core: dict[str, tuple[Floats, int]],
-) -> tuple[tuple[int, ...], list[Floats]]:
+def broadcast(core: dict[str, tuple[Floats, int]], *, lone: bool = False) -> tuple[tuple[int, ...], list[Floats]]:
     """Broadcasts leading axes. `core` maps a name to (array, number of trailing core axes).
 
-    Returns the batch shape and the arrays flattened to (n, *core), C-contiguous.
+    Returns the batch shape and the arrays flattened to (n, *core), C-contiguous; with `lone` those that hold but one
+    item to (1, *core), for kernels that take one for all.
     """
     leads = {name: a.shape[: a.ndim - k] for name, (a, k) in core.items()}
     try:
@@ -148,6 +147,9 @@ def broadcast(
     flat = []
     for a, k in core.values():
         tail = a.shape[a.ndim - k :]
+        if lone and math.prod(a.shape[: a.ndim - k]) == 1:
+            flat.append(np.require(a.reshape((1, *tail)), requirements=["C", "A"]))
+            continue
         full = a if a.shape[: a.ndim - k] == shape else np.broadcast_to(a, shape + tail)
         flat.append(np.require(full.reshape((size, *tail)), requirements=["C", "A"]))
     return shape, flat

@@ -2,13 +2,17 @@
 //! has its own, or finds it by number.
 
 use super::bsdf::{Bsdf, Terms};
-use super::model::{Draw, Row};
+use super::lambert::Diffuse;
+use super::metallic_roughness::Lobes;
+use super::model::{Draw, Model, Row, WIDTH};
 use super::rough_conductor::RoughConductor;
-use crate::dispatch;
+use super::specular_glossiness::SpecularGlossiness;
 use crate::parallel::{self, Interrupted, Watch};
-use crate::real::Real;
-use crate::simd::{Simd, SimdBase};
+use crate::real::{Lanes, Real};
+use crate::simd::Simd;
+use crate::simd::columns::{Sink, Source};
 use crate::vec::Vec3;
+use crate::{dispatch, in_lanes};
 
 /// Rows of one kind, and which of them serves an element.
 #[derive(Clone, Copy)]
@@ -70,10 +74,10 @@ pub fn eval_many<T: Real>(
 ) -> Result<(), Interrupted> {
     parallel::for_each(watch, (wi, wo, out), PIECE, |first, (wi, wo, out)| {
         dispatch!(s => {
-            let (only, mut own) = (rows.only(), None);
-            if let Some(Bsdf::RoughConductor(m)) = only {
-                return rough_conductor(s, &m, wi, wo, out);
+            if rows.ids.is_none() && lanes::<T, _, Value, 3>(s, &rows, first, (wi, wo), out) {
+                return;
             }
+            let (only, mut own) = (rows.only(), None);
             for i in 0..out.len() {
                 out[i] = match rows.serving(first + i, &only, &mut own) {
                     Some(bsdf) => bsdf.eval(wi[i].into(), wo[i].into()).to_array(),
@@ -84,46 +88,85 @@ pub fn eval_many<T: Real>(
     })
 }
 
-/// Directions of eight elements, in lanes.
-#[inline(always)]
-fn gather<T: Real, S: Simd>(s: S, w: &[[T; 3]; LANES]) -> Vec3<T::V8<S>> {
-    let mut columns = [[T::zero(); LANES]; 3];
-    for k in 0..LANES {
-        for c in 0..3 {
-            columns[c][k] = w[k][c];
-        }
-    }
-    Vec3::from(columns).map(
-        #[inline(always)]
-        |c| <T::V8<S> as SimdBase<S>>::load_array_ref(s, &c),
-    )
+/// What a model gives of eight pairs of directions.
+trait Job<V: Lanes, const N: usize> {
+    fn of<M: Model<V>>(model: &M, wi: Vec3<V>, wo: Vec3<V>) -> [V; N];
 }
 
-const LANES: usize = 8;
+struct Value;
+struct Density;
 
-/// One metal for all directions: eight at a time.
+impl<V: Lanes> Job<V, 3> for Value {
+    #[inline(always)]
+    fn of<M: Model<V>>(model: &M, wi: Vec3<V>, wo: Vec3<V>) -> [V; 3] {
+        model.eval(wi, wo).to_array()
+    }
+}
+
+impl<V: Lanes> Job<V, 1> for Density {
+    #[inline(always)]
+    fn of<M: Model<V>>(model: &M, wi: Vec3<V>, wo: Vec3<V>) -> [V; 1] {
+        [model.pdf(wi, wo)]
+    }
+}
+
+/// A job eight elements at a time, by models that are written in lanes; whether there was one.
 #[inline(always)]
-fn rough_conductor<T: Real, S: Simd>(
+fn lanes<T: Real, S: Simd, J: Job<T::V8<S>, N>, const N: usize>(
     s: S,
-    metal: &RoughConductor<T>,
-    wi: &[[T; 3]],
-    wo: &[[T; 3]],
-    out: &mut [[T; 3]],
+    rows: &Rows<'_, T>,
+    first: usize,
+    (wi, wo): (&[[T; 3]], &[[T; 3]]),
+    out: &mut [[T; N]],
+) -> bool {
+    match rows.kind {
+        0 => by_model::<T, S, Lobes<T::V8<S>>, J, N>(s, rows, first, (wi, wo), out),
+        1 => by_model::<T, S, Diffuse<T::V8<S>>, J, N>(s, rows, first, (wi, wo), out),
+        4 => by_model::<T, S, RoughConductor<T::V8<S>>, J, N>(s, rows, first, (wi, wo), out),
+        9 => by_model::<T, S, SpecularGlossiness<T::V8<S>>, J, N>(s, rows, first, (wi, wo), out),
+        _ => return false,
+    }
+    true
+}
+
+#[inline(always)]
+fn by_model<T: Real, S: Simd, M: Model<T::V8<S>>, J: Job<T::V8<S>, N>, const N: usize>(
+    s: S,
+    rows: &Rows<'_, T>,
+    first: usize,
+    (wi, wo): (&[[T; 3]], &[[T; 3]]),
+    out: &mut [[T; N]],
 ) {
-    let lanes = metal.lanes(s);
-    let (wi, wi_rest) = wi.as_chunks::<LANES>();
-    let (wo, wo_rest) = wo.as_chunks::<LANES>();
-    let (out, out_rest) = out.as_chunks_mut::<LANES>();
-    for (wi, (wo, out)) in wi.iter().zip(wo.iter().zip(out)) {
-        let f = lanes.value(gather(s, wi), gather(s, wo));
-        let (x, y, z) = (f.x.as_slice(), f.y.as_slice(), f.z.as_slice());
-        for k in 0..LANES {
-            out[k] = [x[k], y[k], z[k]];
-        }
+    let n = out.len();
+    let (mut wi, mut wo, mut out) = (Source::over(wi, 0), Source::over(wo, 0), Sink::over(s, out));
+    let mut row = Source::over(rows.rows, first);
+    if rows.rows.len() == 1 {
+        let row = row.lanes(s, 0);
+        let (model, spoilt) = (M::of(&row), spoilt(&row));
+        in_lanes!(s, n, |wi, wo| -> (out) { marked(J::of(&model, wi.into(), wo.into()), spoilt) });
+    } else {
+        in_lanes!(s, n, |wi, wo, row| -> (out) {
+            marked(J::of(&M::of(&row), wi.into(), wo.into()), spoilt(&row))
+        });
     }
-    for (wi, (wo, out)) in wi_rest.iter().zip(wo_rest.iter().zip(out_rest)) {
-        *out = metal.value((*wi).into(), (*wo).into()).to_array();
+}
+
+/// Zero; NaN where a parameter is.
+#[inline(always)]
+fn spoilt<V: Lanes>(row: &Row<V>) -> V {
+    let mut sum = row[0].num(0.0);
+    for k in 0..WIDTH {
+        sum = sum + row[k] * row[k].num(0.0);
     }
+    sum
+}
+
+#[inline(always)]
+fn marked<V: Lanes, const N: usize>(mut x: [V; N], spoilt: V) -> [V; N] {
+    for c in 0..N {
+        x[c] = x[c] + spoilt;
+    }
+    x
 }
 
 /// NaN where a parameter is.
@@ -132,15 +175,18 @@ pub fn pdf_many<T: Real>(
     rows: Rows<'_, T>,
     wi: &[[T; 3]],
     wo: &[[T; 3]],
-    out: &mut [T],
+    out: &mut [[T; 1]],
 ) -> Result<(), Interrupted> {
     parallel::for_each(watch, (wi, wo, out), PIECE, |first, (wi, wo, out)| {
-        dispatch!(_s => {
+        dispatch!(s => {
+            if rows.ids.is_none() && lanes::<T, _, Density, 1>(s, &rows, first, (wi, wo), out) {
+                return;
+            }
             let (only, mut own) = (rows.only(), None);
             for i in 0..out.len() {
                 out[i] = match rows.serving(first + i, &only, &mut own) {
-                    Some(bsdf) => bsdf.pdf(wi[i].into(), wo[i].into()),
-                    None => T::NAN,
+                    Some(bsdf) => [bsdf.pdf(wi[i].into(), wo[i].into())],
+                    None => [T::NAN],
                 };
             }
         })

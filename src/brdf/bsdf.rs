@@ -5,7 +5,7 @@ use super::dielectric::Dielectric;
 use super::kulla_conty::Compensated;
 use super::lambert::Diffuse;
 use super::metallic_roughness::Lobes;
-use super::model::{Draw, Model, Row};
+use super::model::{Draw, Drawn, Model, Row};
 use super::oren_nayar::OrenNayar;
 use super::phong::Phong;
 use super::plastic::Plastic;
@@ -51,7 +51,7 @@ macro_rules! models {
             #[inline(always)]
             pub fn sample(&self, wo: Vec3<T>, u: [T; 3]) -> Option<Draw<T>> {
                 match self {
-                    $(Bsdf::$name(m) => Model::sample(m, wo, u)),+
+                    $(Bsdf::$name(m) => Drawn::sample(m, wo, u)),+
                 }
             }
         }

@@ -1,7 +1,7 @@
 //! The smooth metal: a mirror whose reflectance is Fresnel's for a complex index, per channel.
 
 use super::fresnel::fresnel_metal;
-use super::model::{Draw, Model, Row, triple};
+use super::model::{Draw, Drawn, Model, Row, triple};
 use crate::real::Real;
 use crate::vec::Vec3;
 
@@ -40,6 +40,9 @@ impl<T: Real> Model<T> for Conductor<T> {
     fn pdf(&self, _wi: Vec3<T>, _wo: Vec3<T>) -> T {
         T::zero()
     }
+}
+
+impl<T: Real> Drawn<T> for Conductor<T> {
     #[inline(always)]
     fn sample(&self, wo: Vec3<T>, _u: [T; 3]) -> Option<Draw<T>> {
         let one = T::one();

@@ -4,7 +4,7 @@
 //! index it leaves for `wo` over (1/η on the way in), as radiance per η² is what stays along a ray.
 
 use super::fresnel::fresnel_dielectric;
-use super::model::{Draw, Model, Row, triple};
+use super::model::{Draw, Drawn, Model, Row, triple};
 use crate::real::Real;
 use crate::vec::Vec3;
 
@@ -29,6 +29,9 @@ impl<T: Real> Model<T> for Dielectric<T> {
     fn pdf(&self, _wi: Vec3<T>, _wo: Vec3<T>) -> T {
         T::zero()
     }
+}
+
+impl<T: Real> Drawn<T> for Dielectric<T> {
     #[inline(always)]
     fn sample(&self, wo: Vec3<T>, u: [T; 3]) -> Option<Draw<T>> {
         let one = T::one();

@@ -8,8 +8,6 @@
 //! optics*, 1999, sections 1.5 and 14.2; W. G. Egan, T. Hilgeman, J. Reichman, *Determination of absorption and
 //! scattering coefficients for nonhomogeneous media*, 1973 (the average over the hemisphere).
 
-use crate::dispatch;
-use crate::parallel::{self, Interrupted, Watch};
 use crate::real::{Lanes, Real};
 
 /// Reflectances of light polarised across and in the plane of incidence, and the cosine of the refracted ray.
@@ -38,7 +36,7 @@ pub fn schlick_weight<V: Lanes>(cos_theta: V) -> V {
 }
 
 #[inline(always)]
-pub fn fresnel_schlick<T: Real>(cos_theta: T, f0: T, f90: T) -> T {
+pub fn fresnel_schlick<V: Lanes>(cos_theta: V, f0: V, f90: V) -> V {
     f0 + (f90 - f0) * schlick_weight(cos_theta)
 }
 
@@ -88,49 +86,30 @@ pub fn fresnel_conductor<V: Lanes>(cos_theta: V, eta: V, k: V) -> Fresnel<V> {
     Fresnel { s, p, cos_t: eta.num(0.0) }
 }
 
-/// The same of unpolarised light by one division: (1 + (t1 − t2) / (t1 + t2)) / 2 = t1 / (t1 + t2).
+/// The same of unpolarised light by two roots and one division: (1 + (t1 − t2) / (t1 + t2)) / 2 = t1 / (t1 + t2).
 #[inline(always)]
 pub fn fresnel_metal<V: Lanes>(cos_theta: V, eta: V, k: V) -> V {
     let c2 = cos_theta * cos_theta;
     let s2 = (eta.num(1.0) - cos_theta) * (eta.num(1.0) + cos_theta);
-    let (sum, twice) = in_metal(cos_theta, eta, k);
-    let (near, across) = (sum + c2, c2 * sum + s2 * s2);
+    // As in `in_metal`, everything times the root q.
+    let real = (eta - k) * (eta + k) - s2;
+    let imaginary = eta.num(2.0) * eta * k;
+    let sum = (real * real + imaginary * imaginary).sqrt();
+    let squared = eta.num(2.0) * (sum + real.abs());
+    let q = squared.max(eta.num(1e-24)).sqrt();
+    let twice = cos_theta * V::select(real.less(real.num(0.0)), eta.num(2.0) * imaginary, squared);
+    let (near, across) = ((sum + c2) * q, (c2 * sum + s2 * s2) * q);
     (near - twice) * across / ((near + twice) * (across + twice * s2))
 }
 
 /// NaN unless in [0, 1].
 #[inline(always)]
-pub fn cosine<T: Real>(c: T) -> T {
+pub fn cosine<V: Lanes>(c: V) -> V {
     super::in_unit(c)
 }
 
 /// NaN unless positive.
 #[inline(always)]
-pub fn index<T: Real>(eta: T) -> T {
-    if eta > T::zero() { eta } else { T::NAN }
-}
-
-/// [`fresnel_schlick`] over arrays of equal length; NaN outside cos θ ∈ [0, 1].
-pub fn fresnel_schlick_many<T: Real>(
-    watch: &mut dyn Watch,
-    cos_theta: &[T],
-    f0: &[T],
-    f90: &[T],
-    out: &mut [T],
-) -> Result<(), Interrupted> {
-    parallel::for_each(
-        watch,
-        (cos_theta, f0, f90, out),
-        1 << 14,
-        |_, (c, f0, f90, out)| dispatch!(_s => body(c, f0, f90, out)),
-    )
-}
-
-#[inline(always)]
-fn body<T: Real>(cos_theta: &[T], f0: &[T], f90: &[T], out: &mut [T]) {
-    for i in 0..out.len() {
-        let c = cos_theta[i];
-        let inside = c >= T::zero() && c <= T::one();
-        out[i] = if inside { fresnel_schlick(c, f0[i], f90[i]) } else { T::NAN };
-    }
+pub fn index<V: Lanes>(eta: V) -> V {
+    V::select(eta.num(0.0).less(eta), eta, eta.like(V::Elem::NAN))
 }

@@ -13,7 +13,7 @@
 //! exploration*, 2018 (the colour); E. Turquin, *Practical multiple scattering compensation for microfacet models*, 2019.
 
 use super::microfacets::{Masking, Microfacets, Shape};
-use super::model::{Draw, Model, Row, triple};
+use super::model::{Draw, Drawn, Model, Row, triple};
 use super::rough_conductor::RoughConductor;
 use crate::real::Real;
 use crate::sampling::cosine_hemisphere::{square_to_cosine_hemisphere, square_to_cosine_hemisphere_pdf};
@@ -233,6 +233,9 @@ impl<T: Real> Model<T> for Compensated<T> {
         let one = T::one();
         (one - chance) * self.once.pdf(wi, wo) + chance * square_to_cosine_hemisphere_pdf(wi)
     }
+}
+
+impl<T: Real> Drawn<T> for Compensated<T> {
     #[inline(always)]
     fn sample(&self, wo: Vec3<T>, u: [T; 3]) -> Option<Draw<T>> {
         if !(wo.z > T::zero()) {

@@ -12,9 +12,7 @@
 use super::fresnel::schlick_weight;
 use super::ggx::{self, Masking};
 use super::microfacets::Microfacets;
-use super::model::{Draw, Model, Row, triple, weighed};
-use crate::dispatch;
-use crate::parallel::{self, Interrupted, Watch};
+use super::model::{Draw, Drawn, Model, Row, triple, weighed};
 use crate::real::{Lanes, Real};
 use crate::sampling::cosine_hemisphere::{square_to_cosine_hemisphere, square_to_cosine_hemisphere_pdf};
 use crate::sampling::disk::Method;
@@ -48,11 +46,12 @@ pub struct Lobes<T> {
     pub alpha: T,
 }
 
-impl<T: Real> Material<T> {
+impl<V: Lanes> Material<V> {
     #[inline(always)]
-    pub fn lobes(self) -> Lobes<T> {
-        let (m, rest) = (self.metallic, T::one() - self.metallic);
-        let base_f0 = T::of(DIELECTRIC_F0) * self.specular;
+    pub fn lobes(self) -> Lobes<V> {
+        let m = self.metallic;
+        let rest = m.num(1.0) - m;
+        let base_f0 = m.num(DIELECTRIC_F0) * self.specular;
         Lobes {
             diffuse: self.base_color * rest,
             base_f0,
@@ -62,7 +61,7 @@ impl<T: Real> Material<T> {
                 |c| rest * base_f0 + m * c,
             ),
             f90: rest * self.specular + m,
-            alpha: Lanes::max(self.roughness * self.roughness, T::of(MIN_ALPHA)),
+            alpha: (self.roughness * self.roughness).max(m.num(MIN_ALPHA)),
         }
     }
     /// NaN throughout where a parameter is out of [0, 1].
@@ -71,32 +70,33 @@ impl<T: Real> Material<T> {
         let Material { base_color: c, metallic, roughness, specular } = self;
         let sum = super::in_unit(c.x) + super::in_unit(c.y) + super::in_unit(c.z);
         let sum = sum + super::in_unit(metallic) + super::in_unit(roughness) + super::in_unit(specular);
-        if sum.is_nan() {
-            Material { base_color: Vec3::splat(T::NAN), metallic: sum, roughness: sum, specular: sum }
-        } else {
-            self
+        let (good, nan) = (sum.equal(sum), sum.like(V::Elem::NAN));
+        Material {
+            base_color: c.map(
+                #[inline(always)]
+                |c| V::select(good, c, nan),
+            ),
+            metallic: V::select(good, metallic, nan),
+            roughness: V::select(good, roughness, nan),
+            specular: V::select(good, specular, nan),
         }
     }
 }
 
-impl<T: Real> Lobes<T> {
+impl<V: Lanes> Lobes<V> {
     /// What the dielectric lets through in a direction with this cosine.
     #[inline(always)]
-    pub fn transmitted(&self, cos_theta: T) -> T {
-        T::one() - (self.base_f0 + (self.base_f90 - self.base_f0) * schlick_weight(cos_theta))
+    pub fn transmitted(&self, cos_theta: V) -> V {
+        cos_theta.num(1.0) - (self.base_f0 + (self.base_f90 - self.base_f0) * schlick_weight(cos_theta))
     }
     #[inline(always)]
-    pub fn is_specular(&self) -> bool {
-        self.f90 > T::zero()
-    }
-    #[inline(always)]
-    pub fn facets(&self) -> Microfacets<T> {
+    pub fn facets(&self) -> Microfacets<V> {
         Microfacets::ggx(self.alpha, Masking::HeightCorrelated)
     }
     /// The reflectance of a mirror at a cosine.
     #[inline(always)]
-    pub fn fresnel(&self, cos_half: T) -> Vec3<T> {
-        let weight = schlick_weight(Lanes::min(cos_half, T::one()));
+    pub fn fresnel(&self, cos_half: V) -> Vec3<V> {
+        let weight = schlick_weight(cos_half.min(cos_half.num(1.0)));
         self.f0.map(
             #[inline(always)]
             |f0| f0 + (self.f90 - f0) * weight,
@@ -104,26 +104,52 @@ impl<T: Real> Lobes<T> {
     }
     /// The mirrors' part of the BRDF; both directions above the horizon.
     #[inline(always)]
-    pub fn specular(&self, wi: Vec3<T>, wo: Vec3<T>) -> Vec3<T> {
+    pub fn specular(&self, wi: Vec3<V>, wo: Vec3<V>) -> Vec3<V> {
         let (dv, cos_half) = ggx::distribution_and_visibility(wi, wo, self.alpha, Masking::HeightCorrelated);
         self.fresnel(cos_half) * dv
     }
     /// The BRDF in sr⁻¹; zero unless both directions are above the horizon.
     #[inline(always)]
-    pub fn eval(&self, wi: Vec3<T>, wo: Vec3<T>) -> Vec3<T> {
-        if super::apart(wi, wo) {
-            return Vec3::splat(T::zero());
-        }
-        let through = self.transmitted(wi.z) * self.transmitted(wo.z) / T::PI;
-        self.diffuse * through + self.specular(wi, wo)
+    pub fn eval(&self, wi: Vec3<V>, wo: Vec3<V>) -> Vec3<V> {
+        let pi = wi.z.num(std::f64::consts::PI);
+        let through = self.transmitted(wi.z) * self.transmitted(wo.z) / pi;
+        super::above(wi, wo, self.diffuse * through + self.specular(wi, wo))
     }
     /// The probability of drawing from the mirrors rather than from the cosine lobe, for light leaving along `wo`.
     #[inline(always)]
-    pub fn specular_chance(&self, wo: Vec3<T>) -> T {
-        let weight = schlick_weight(wo.z);
-        let mirrors = largest(self.f0) * (T::one() - weight) + self.f90 * weight;
+    pub fn specular_chance(&self, wo: Vec3<V>) -> V {
+        let (zero, one, weight) = (wo.z.num(0.0), wo.z.num(1.0), schlick_weight(wo.z));
+        let mirrors = largest(self.f0) * (one - weight) + self.f90 * weight;
         let diffuse = largest(self.diffuse) * self.transmitted(wo.z);
-        if mirrors > T::zero() { mirrors / (mirrors + diffuse) } else { mirrors }
+        V::select(zero.less(mirrors), mirrors / (mirrors + diffuse), mirrors)
+    }
+    /// A direction `wi` for `wo` above the horizon, from three numbers of [0, 1); may lie below the horizon. Both parts
+    /// are worked out: for lanes.
+    #[inline(always)]
+    pub fn sample_of_both(&self, wo: Vec3<V>, u: [V; 3]) -> Vec3<V> {
+        let mirrors = u[2].less(self.specular_chance(wo));
+        let cosine = square_to_cosine_hemisphere([u[0], u[1]], Method::Concentric);
+        ggx::ggx_sample(wo, [u[0], u[1]], self.alpha).zip(
+            cosine,
+            #[inline(always)]
+            |a, b| V::select(mirrors, a, b),
+        )
+    }
+    /// The density of [`Lobes::sample`] per solid angle of `wi`.
+    #[inline(always)]
+    pub fn pdf(&self, wi: Vec3<V>, wo: Vec3<V>) -> V {
+        let (zero, one) = (wo.z.num(0.0), wo.z.num(1.0));
+        let chance = self.specular_chance(wo);
+        let mirrors = V::select(zero.less(chance), ggx::ggx_pdf(wi, wo, self.alpha), zero);
+        let pdf = chance * mirrors + (one - chance) * square_to_cosine_hemisphere_pdf(wi);
+        V::select(wo.z.less_eq(zero), zero, pdf)
+    }
+}
+
+impl<T: Real> Lobes<T> {
+    #[inline(always)]
+    pub fn is_specular(&self) -> bool {
+        self.f90 > T::zero()
     }
     /// A direction `wi` for `wo` above the horizon, from three numbers of [0, 1); may lie below the horizon.
     #[inline(always)]
@@ -134,32 +160,25 @@ impl<T: Real> Lobes<T> {
             square_to_cosine_hemisphere([u[0], u[1]], Method::Concentric)
         }
     }
-    /// The density of [`Lobes::sample`] per solid angle of `wi`.
-    #[inline(always)]
-    pub fn pdf(&self, wi: Vec3<T>, wo: Vec3<T>) -> T {
-        if wo.z <= T::zero() {
-            return T::zero();
-        }
-        let chance = self.specular_chance(wo);
-        let mirrors = if chance > T::zero() { ggx::ggx_pdf(wi, wo, self.alpha) } else { T::zero() };
-        chance * mirrors + (T::one() - chance) * square_to_cosine_hemisphere_pdf(wi)
-    }
 }
 
-impl<T: Real> Model<T> for Lobes<T> {
+impl<V: Lanes> Model<V> for Lobes<V> {
     #[inline(always)]
-    fn of(row: &Row<T>) -> Self {
+    fn of(row: &Row<V>) -> Self {
         let [metallic, roughness, specular] = [row[3], row[4], row[5]];
         Material { base_color: triple(row, 0), metallic, roughness, specular }.lobes()
     }
     #[inline(always)]
-    fn eval(&self, wi: Vec3<T>, wo: Vec3<T>) -> Vec3<T> {
+    fn eval(&self, wi: Vec3<V>, wo: Vec3<V>) -> Vec3<V> {
         Lobes::eval(self, wi, wo)
     }
     #[inline(always)]
-    fn pdf(&self, wi: Vec3<T>, wo: Vec3<T>) -> T {
+    fn pdf(&self, wi: Vec3<V>, wo: Vec3<V>) -> V {
         Lobes::pdf(self, wi, wo)
     }
+}
+
+impl<T: Real> Drawn<T> for Lobes<T> {
     #[inline(always)]
     fn sample(&self, wo: Vec3<T>, u: [T; 3]) -> Option<Draw<T>> {
         if !(wo.z > T::zero()) {
@@ -170,8 +189,8 @@ impl<T: Real> Model<T> for Lobes<T> {
 }
 
 #[inline(always)]
-fn largest<T: Real>(c: Vec3<T>) -> T {
-    Lanes::max(Lanes::max(c.x, c.y), c.z)
+fn largest<V: Lanes>(c: Vec3<V>) -> V {
+    c.x.max(c.y).max(c.z)
 }
 
 /// Material parameters as arrays of equal length.
@@ -193,63 +212,4 @@ impl<T: Real> Materials<'_, T> {
             specular: self.specular[i],
         }
     }
-}
-
-const PIECE: usize = 1 << 13;
-
-/// [`Lobes::eval`] over arrays of equal length; NaN where a parameter is out of [0, 1].
-pub fn metallic_roughness_many<T: Real>(
-    watch: &mut dyn Watch,
-    wi: &[[T; 3]],
-    wo: &[[T; 3]],
-    materials: Materials<'_, T>,
-    out: &mut [[T; 3]],
-) -> Result<(), Interrupted> {
-    parallel::for_each(watch, (wi, wo, out), PIECE, |first, (wi, wo, out)| {
-        dispatch!(_s => {
-            for i in 0..out.len() {
-                let lobes = materials.at(first + i).checked().lobes();
-                out[i] = lobes.eval(wi[i].into(), wo[i].into()).to_array();
-            }
-        })
-    })
-}
-
-/// [`Lobes::sample`] over arrays of equal length; NaN where `wo` is below the horizon.
-pub fn metallic_roughness_sample_many<T: Real>(
-    watch: &mut dyn Watch,
-    wo: &[[T; 3]],
-    u: &[[T; 3]],
-    materials: Materials<'_, T>,
-    out: &mut [[T; 3]],
-) -> Result<(), Interrupted> {
-    parallel::for_each(watch, (wo, u, out), PIECE, |first, (wo, u, out)| {
-        dispatch!(_s => {
-            for i in 0..out.len() {
-                let material = materials.at(first + i).checked();
-                let valid = wo[i][2] > T::zero() && !material.metallic.is_nan();
-                let wi = material.lobes().sample(wo[i].into(), u[i]);
-                out[i] = if valid { wi.to_array() } else { [T::NAN; 3] };
-            }
-        })
-    })
-}
-
-/// [`Lobes::pdf`] over arrays of equal length; NaN where a parameter is out of [0, 1].
-pub fn metallic_roughness_pdf_many<T: Real>(
-    watch: &mut dyn Watch,
-    wi: &[[T; 3]],
-    wo: &[[T; 3]],
-    materials: Materials<'_, T>,
-    out: &mut [T],
-) -> Result<(), Interrupted> {
-    parallel::for_each(watch, (wi, wo, out), PIECE, |first, (wi, wo, out)| {
-        dispatch!(_s => {
-            for i in 0..out.len() {
-                let material = materials.at(first + i).checked();
-                let pdf = material.lobes().pdf(wi[i].into(), wo[i].into());
-                out[i] = if material.metallic.is_nan() { T::NAN } else { pdf };
-            }
-        })
-    })
 }

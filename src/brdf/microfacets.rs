@@ -135,29 +135,29 @@ impl<V: Lanes> Microfacets<V> {
     }
 }
 
-impl<T: Real> Microfacets<T> {
-    /// From four numbers: widths along x and y, shape, masking.
+impl<V: Lanes> Microfacets<V> {
+    /// From widths along x and y, and the numbers of shape and masking.
     #[inline(always)]
-    pub fn of(numbers: [T; 4]) -> Self {
-        let [alpha_x, alpha_y, shape, masking] = numbers;
+    pub fn of(alpha_x: V, alpha_y: V, shape: V, masking: V) -> Self {
         let ratio = [alpha_y / alpha_x, alpha_x / alpha_y];
-        Microfacets { alpha_x, alpha_y, ratio, shape: Shape::of(shape), masking: Masking::of(masking) }
+        let (shape, masking) = (Shape::of(shape.first()), Masking::of(masking.first()));
+        Microfacets { alpha_x, alpha_y, ratio, shape, masking }
     }
 
     /// GGX of one width in all directions.
     #[inline(always)]
-    pub fn ggx(alpha: T, masking: Masking) -> Self {
-        let one = T::one();
+    pub fn ggx(alpha: V, masking: Masking) -> Self {
+        let one = alpha.num(1.0);
         Microfacets { alpha_x: alpha, alpha_y: alpha, ratio: [one, one], shape: Shape::Ggx, masking }
     }
 
     /// A unit normal for `wo` above the horizon, from two numbers of [0, 1): of GGX those visible from `wo`, of
     /// Beckmann all.
     #[inline(always)]
-    pub fn sample(&self, wo: Vec3<T>, u: [T; 2]) -> Vec3<T> {
-        let (zero, one, two) = (T::zero(), T::one(), T::of(2.0));
-        let turn = if u[0] > T::of(0.5) { u[0] - one } else { u[0] };
-        let (sin, cos) = math::sin_cos(two * T::PI * turn);
+    pub fn sample(&self, wo: Vec3<V>, u: [V; 2]) -> Vec3<V> {
+        let (zero, one, two) = (wo.z.num(0.0), wo.z.num(1.0), wo.z.num(2.0));
+        let turn = V::select(one.num(0.5).less(u[0]), u[0] - one, u[0]);
+        let (sin, cos) = math::sin_cos(two * one.num(std::f64::consts::PI) * turn);
         let (ax, ay) = (self.alpha_x, self.alpha_y);
         if self.shape == Shape::Beckmann {
             // tan² of the stretched normal is exponentially distributed.
@@ -170,7 +170,7 @@ impl<T: Real> Microfacets<T> {
         let above = one + stretched.z;
         let below = (stretched.x * stretched.x + stretched.y * stretched.y) / above;
         let (one_minus_z, one_plus_z) = (u[1] * above, (one - u[1]) * above + below);
-        let r = Lanes::max(one_minus_z * one_plus_z, zero).sqrt();
+        let r = (one_minus_z * one_plus_z).max(zero).sqrt();
         Vec3::new(ax * (r * cos + stretched.x), ay * (r * sin + stretched.y), (one - u[1]) * above)
             .normalize()
     }
@@ -178,7 +178,7 @@ impl<T: Real> Microfacets<T> {
     /// The density of [`Microfacets::sample`] per solid angle of the normal, over |wo·h|, for an unnormalised half
     /// vector above the horizon.
     #[inline(always)]
-    pub fn density_over_cosine(&self, wo: Vec3<T>, half: Vec3<T>) -> T {
+    pub fn density_over_cosine(&self, wo: Vec3<V>, half: Vec3<V>) -> V {
         let d = self.distribution(half);
         match self.shape {
             Shape::Ggx => d / self.smith(wo),

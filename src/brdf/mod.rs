@@ -44,18 +44,33 @@ pub use bsdf::{Bsdf, Terms};
 pub use microfacets::{Masking, Microfacets, Shape};
 pub use model::{Draw, Model, Row, WIDTH};
 
-use crate::real::Real;
+use crate::real::{Lanes, Real};
 use crate::vec::Vec3;
 
 /// Whether no light is reflected between the two: either is at or below the horizon. False for NaN, which then
 /// travels on.
 #[inline(always)]
-fn apart<T: Real>(wi: Vec3<T>, wo: Vec3<T>) -> bool {
-    wi.z <= T::zero() || wo.z <= T::zero()
+fn apart<V: Lanes>(wi: Vec3<V>, wo: Vec3<V>) -> V::Mask {
+    let zero = wi.z.num(0.0);
+    wi.z.less_eq(zero) | wo.z.less_eq(zero)
 }
 
 /// NaN unless `x` is in [0, 1].
 #[inline(always)]
-fn in_unit<T: Real>(x: T) -> T {
-    if x >= T::zero() && x <= T::one() { x } else { T::NAN }
+fn in_unit<V: Lanes>(x: V) -> V {
+    let inside = x.num(0.0).less_eq(x) & x.less_eq(x.num(1.0));
+    V::select(inside, x, x.like(V::Elem::NAN))
+}
+
+/// Components of a colour, NaN unless in [0, 1].
+#[inline(always)]
+pub fn color<V: Lanes>(c: [V; 3]) -> Vec3<V> {
+    Vec3::new(in_unit(c[0]), in_unit(c[1]), in_unit(c[2]))
+}
+
+/// `f` but for directions below the horizon, where there is nothing.
+#[inline(always)]
+fn above<V: Lanes>(wi: Vec3<V>, wo: Vec3<V>, f: Vec3<V>) -> Vec3<V> {
+    let (apart, zero) = (apart(wi, wo), wi.z.num(0.0));
+    Vec3::new(V::select(apart, zero, f.x), V::select(apart, zero, f.y), V::select(apart, zero, f.z))
 }

@@ -9,7 +9,7 @@
 //! Values are for radiance: what crosses into the body and comes back out keeps it, since radiance is divided by the
 //! square of the index on the way in and multiplied by it on the way out.
 
-use crate::real::Real;
+use crate::real::{Lanes, Real};
 use crate::vec::Vec3;
 
 /// Numbers of a row.
@@ -40,12 +40,16 @@ impl<T: Real> Draw<T> {
     }
 }
 
-pub trait Model<T: Real>: Copy {
-    fn of(row: &Row<T>) -> Self;
+/// Of numbers, or of lanes where a model is written for both; options are then those of the first lane.
+pub trait Model<V: Lanes>: Copy {
+    fn of(row: &Row<V>) -> Self;
     /// The BSDF in sr⁻¹, without the cosine; what is specular has no value.
-    fn eval(&self, wi: Vec3<T>, wo: Vec3<T>) -> Vec3<T>;
-    /// The density of [`Model::sample`] per solid angle of `wi`, without specular draws.
-    fn pdf(&self, wi: Vec3<T>, wo: Vec3<T>) -> T;
+    fn eval(&self, wi: Vec3<V>, wo: Vec3<V>) -> Vec3<V>;
+    /// The density of [`Drawn::sample`] per solid angle of `wi`, without specular draws.
+    fn pdf(&self, wi: Vec3<V>, wo: Vec3<V>) -> V;
+}
+
+pub trait Drawn<T: Real>: Model<T> {
     /// A direction for `wo` from three numbers of [0, 1); None if nothing can come back along `wo`.
     fn sample(&self, wo: Vec3<T>, u: [T; 3]) -> Option<Draw<T>>;
 }
@@ -62,6 +66,6 @@ pub fn weighed<T: Real, M: Model<T>>(model: &M, wi: Vec3<T>, wo: Vec3<T>, eta: T
 
 /// The three numbers of a row from `at` on.
 #[inline(always)]
-pub fn triple<T: Real>(row: &Row<T>, at: usize) -> Vec3<T> {
+pub fn triple<V: Copy>(row: &Row<V>, at: usize) -> Vec3<V> {
     Vec3::new(row[at], row[at + 1], row[at + 2])
 }

@@ -9,7 +9,7 @@
 //! BRDF*, 2025.
 
 use super::lambert::{cosine_pdf, cosine_sample};
-use super::model::{Draw, Model, Row, triple};
+use super::model::{Draw, Drawn, Model, Row, triple};
 use crate::math;
 use crate::real::{Lanes, Real};
 use crate::vec::Vec3;
@@ -90,6 +90,9 @@ impl<T: Real> Model<T> for OrenNayar<T> {
     fn pdf(&self, wi: Vec3<T>, wo: Vec3<T>) -> T {
         cosine_pdf(wi, wo)
     }
+}
+
+impl<T: Real> Drawn<T> for OrenNayar<T> {
     #[inline(always)]
     fn sample(&self, wo: Vec3<T>, u: [T; 3]) -> Option<Draw<T>> {
         cosine_sample(self, wo, u)

@@ -9,7 +9,7 @@
 //! synthesized pictures*, 1977; E. P. Lafortune, Y. D. Willems, *Using the modified Phong reflectance model for
 //! physically based rendering*, 1994; F. Giesen, *Phong and Blinn-Phong normalization factors*, 2009.
 
-use super::model::{Draw, Model, Row, triple, weighed};
+use super::model::{Draw, Drawn, Model, Row, triple, weighed};
 use crate::math;
 use crate::math::exact::largest;
 use crate::real::{Lanes, Real};
@@ -102,6 +102,9 @@ impl<T: Real> Model<T> for Phong<T> {
         };
         chance * lobe + (one - chance) * square_to_cosine_hemisphere_pdf(wi)
     }
+}
+
+impl<T: Real> Drawn<T> for Phong<T> {
     #[inline(always)]
     fn sample(&self, wo: Vec3<T>, u: [T; 3]) -> Option<Draw<T>> {
         let (one, two) = (T::one(), T::of(2.0));

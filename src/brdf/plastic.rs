@@ -8,7 +8,7 @@
 //! inner reflectance see [`super::fresnel_average`].
 
 use super::fresnel::fresnel_dielectric;
-use super::model::{Draw, Model, Row, triple, weighed};
+use super::model::{Draw, Drawn, Model, Row, triple, weighed};
 use crate::math::exact::largest;
 use crate::real::Real;
 use crate::sampling::cosine_hemisphere::{square_to_cosine_hemisphere, square_to_cosine_hemisphere_pdf};
@@ -61,6 +61,9 @@ impl<T: Real> Model<T> for Plastic<T> {
         }
         (T::one() - self.chance(self.reflected(wo.z))) * square_to_cosine_hemisphere_pdf(wi)
     }
+}
+
+impl<T: Real> Drawn<T> for Plastic<T> {
     #[inline(always)]
     fn sample(&self, wo: Vec3<T>, u: [T; 3]) -> Option<Draw<T>> {
         let one = T::one();

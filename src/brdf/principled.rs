@@ -11,7 +11,7 @@
 
 use super::fresnel::{fresnel_dielectric, schlick_weight};
 use super::microfacets::{Masking, Microfacets, Shape};
-use super::model::{Draw, Model, Row, triple, weighed};
+use super::model::{Draw, Drawn, Model, Row, triple, weighed};
 use super::ndf::{gtr, gtr1_sample};
 use super::rough_dielectric::RoughDielectric;
 use crate::math::exact::largest;
@@ -206,6 +206,9 @@ impl<T: Real> Model<T> for Principled<T> {
         let through = if glass > zero { glass * self.glass.pdf(wi, wo) } else { zero };
         body * square_to_cosine_hemisphere_pdf(wi) + self.mirrored(wi, wo, shine, coat) + through
     }
+}
+
+impl<T: Real> Drawn<T> for Principled<T> {
     #[inline(always)]
     fn sample(&self, wo: Vec3<T>, u: [T; 3]) -> Option<Draw<T>> {
         let (zero, one, two) = (T::zero(), T::one(), T::of(2.0));
@@ -225,7 +228,7 @@ impl<T: Real> Model<T> for Principled<T> {
         } else if glass > zero {
             let first = body + shine + coat;
             let choice = Lanes::min((u[2] - first) / glass, one - T::EPSILON);
-            let draw = Model::sample(&self.glass, wo, [u[0], u[1], choice])?;
+            let draw = Drawn::sample(&self.glass, wo, [u[0], u[1], choice])?;
             if draw.specular || !(draw.pdf > zero) {
                 return Some(draw);
             }

@@ -6,9 +6,8 @@
 
 use super::fresnel::fresnel_metal;
 use super::microfacets::Microfacets;
-use super::model::{Draw, Model, Row, triple, weighed};
+use super::model::{Draw, Drawn, Model, Row, triple, weighed};
 use crate::real::{Lanes, Real};
-use crate::simd::{Simd, SimdBase};
 use crate::vec::Vec3;
 
 #[derive(Clone, Copy, Debug)]
@@ -47,54 +46,25 @@ impl<V: Lanes> RoughConductor<V> {
     }
 }
 
-/// A number in every lane.
-#[inline(always)]
-fn all<T: Real, S: Simd>(s: S, x: T) -> T::V8<S> {
-    <T::V8<S> as SimdBase<S>>::splat(s, x)
-}
-
-impl<T: Real> RoughConductor<T> {
-    /// The same metal in every lane.
+impl<V: Lanes> Model<V> for RoughConductor<V> {
     #[inline(always)]
-    pub fn lanes<S: Simd>(&self, s: S) -> RoughConductor<T::V8<S>> {
-        let Microfacets { alpha_x, alpha_y, ratio: [ratio, inverse], shape, masking } = self.facets;
-        let (alpha_x, alpha_y) = (all(s, alpha_x), all(s, alpha_y));
-        RoughConductor {
-            tint: self.tint.map(
-                #[inline(always)]
-                |x| all(s, x),
-            ),
-            eta: self.eta.map(
-                #[inline(always)]
-                |x| all(s, x),
-            ),
-            k: self.k.map(
-                #[inline(always)]
-                |x| all(s, x),
-            ),
-            facets: Microfacets { alpha_x, alpha_y, ratio: [all(s, ratio), all(s, inverse)], shape, masking },
-        }
-    }
-}
-
-impl<T: Real> Model<T> for RoughConductor<T> {
-    #[inline(always)]
-    fn of(row: &Row<T>) -> Self {
-        let facets = Microfacets::of([row[9], row[10], row[11], row[12]]);
+    fn of(row: &Row<V>) -> Self {
+        let facets = Microfacets::of(row[9], row[10], row[11], row[12]);
         RoughConductor { tint: triple(row, 0), eta: triple(row, 3), k: triple(row, 6), facets }
     }
     #[inline(always)]
-    fn eval(&self, wi: Vec3<T>, wo: Vec3<T>) -> Vec3<T> {
+    fn eval(&self, wi: Vec3<V>, wo: Vec3<V>) -> Vec3<V> {
         self.value(wi, wo)
     }
     #[inline(always)]
-    fn pdf(&self, wi: Vec3<T>, wo: Vec3<T>) -> T {
-        let half = wi + wo;
-        if wo.z <= T::zero() || half.z <= T::zero() {
-            return T::zero();
-        }
-        self.facets.density_over_cosine(wo, half) * T::of(0.25)
+    fn pdf(&self, wi: Vec3<V>, wo: Vec3<V>) -> V {
+        let (half, zero) = (wi + wo, wo.z.num(0.0));
+        let density = self.facets.density_over_cosine(wo, half) * zero.num(0.25);
+        V::select(wo.z.less_eq(zero) | half.z.less_eq(zero), zero, density)
     }
+}
+
+impl<T: Real> Drawn<T> for RoughConductor<T> {
     #[inline(always)]
     fn sample(&self, wo: Vec3<T>, u: [T; 3]) -> Option<Draw<T>> {
         if !(wo.z > T::zero()) {

@@ -7,7 +7,7 @@
 
 use super::fresnel::fresnel_dielectric;
 use super::microfacets::Microfacets;
-use super::model::{Draw, Model, Row, triple, weighed};
+use super::model::{Draw, Drawn, Model, Row, triple, weighed};
 use crate::real::{Lanes, Real};
 use crate::vec::Vec3;
 
@@ -52,7 +52,7 @@ impl<T: Real> RoughDielectric<T> {
 impl<T: Real> Model<T> for RoughDielectric<T> {
     #[inline(always)]
     fn of(row: &Row<T>) -> Self {
-        let facets = Microfacets::of([row[4], row[5], row[6], row[7]]);
+        let facets = Microfacets::of(row[4], row[5], row[6], row[7]);
         RoughDielectric { tint: triple(row, 0), eta: row[3], facets }
     }
     #[inline(always)]
@@ -97,6 +97,9 @@ impl<T: Real> Model<T> for RoughDielectric<T> {
         let bent = eta / sum;
         self.facets.density_over_cosine(wo, half) * co * through * (bent * bent * ci)
     }
+}
+
+impl<T: Real> Drawn<T> for RoughDielectric<T> {
     #[inline(always)]
     fn sample(&self, wo: Vec3<T>, u: [T; 3]) -> Option<Draw<T>> {
         let (zero, one) = (T::zero(), T::one());

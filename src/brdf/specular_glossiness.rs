@@ -7,7 +7,7 @@
 //! Khronos, *KHR_materials_pbrSpecularGlossiness*, 2017, with the conversion of its appendix.
 
 use super::metallic_roughness::{Lobes, MIN_ALPHA};
-use super::model::{Draw, Model, Row, triple};
+use super::model::{Draw, Drawn, Model, Row, triple};
 use crate::math::exact::largest;
 use crate::real::{Lanes, Real};
 use crate::vec::Vec3;
@@ -15,30 +15,34 @@ use crate::vec::Vec3;
 #[derive(Clone, Copy, Debug)]
 pub struct SpecularGlossiness<T>(pub Lobes<T>);
 
-impl<T: Real> Model<T> for SpecularGlossiness<T> {
+impl<V: Lanes> Model<V> for SpecularGlossiness<V> {
     #[inline(always)]
-    fn of(row: &Row<T>) -> Self {
-        let (one, f0, roughness) = (T::one(), triple(row, 3), T::one() - row[6]);
+    fn of(row: &Row<V>) -> Self {
+        let (one, f0) = (row[6].num(1.0), triple(row, 3));
+        let roughness = one - row[6];
         SpecularGlossiness(Lobes {
             diffuse: triple(row, 0),
-            base_f0: largest(f0),
+            base_f0: f0.x.max(f0.y).max(f0.z),
             base_f90: one,
             f0,
             f90: one,
-            alpha: Lanes::max(roughness * roughness, T::of(MIN_ALPHA)),
+            alpha: (roughness * roughness).max(one.num(MIN_ALPHA)),
         })
     }
     #[inline(always)]
-    fn eval(&self, wi: Vec3<T>, wo: Vec3<T>) -> Vec3<T> {
+    fn eval(&self, wi: Vec3<V>, wo: Vec3<V>) -> Vec3<V> {
         self.0.eval(wi, wo)
     }
     #[inline(always)]
-    fn pdf(&self, wi: Vec3<T>, wo: Vec3<T>) -> T {
+    fn pdf(&self, wi: Vec3<V>, wo: Vec3<V>) -> V {
         self.0.pdf(wi, wo)
     }
+}
+
+impl<T: Real> Drawn<T> for SpecularGlossiness<T> {
     #[inline(always)]
     fn sample(&self, wo: Vec3<T>, u: [T; 3]) -> Option<Draw<T>> {
-        Model::sample(&self.0, wo, u)
+        Drawn::sample(&self.0, wo, u)
     }
 }
 

@@ -94,6 +94,39 @@ macro_rules! elementwise {
     };
 }
 
+/// As [`elementwise!`] with the block in lanes: `lanewise!(py, given, out, |a: 3, b: 1| -> (x: 3) { … })`. Names stand for
+/// arrays of that many vectors of eight lanes, one for each component; arrays given may hold one item for all.
+#[macro_export]
+macro_rules! lanewise {
+    ($py:expr, $given:expr, $out:expr,
+     |$($x:ident: $xn:literal),+ $(,)?| -> ($($y:ident: $yn:literal),+ $(,)?) $body:block) => {
+        $crate::real!($crate::python::array::first(&$given)?, T => {
+            use $crate::python::array::{In, Out, next, run};
+            use $crate::simd::columns::{Sink, Source};
+            let (mut given, mut out) = ($given.iter(), $out.iter());
+            $(let $x = In::<T>::of(stringify!($x), next(&mut given)?)?;)+
+            $(let mut $y = Out::<T>::of(stringify!($y), next(&mut out)?)?;)+
+            $(let $x = $x.items::<$xn>()?;)+
+            $(let $y = $y.items::<$yn>()?;)+
+            let n = [$($y.len()),+];
+            $crate::python::array::same_length(&n)?;
+            let n = n[0];
+            $crate::python::array::same_length(&[n, $(if $x.len() == 1 { n } else { $x.len() }),+])?;
+            run($py, None, |watch| {
+                $crate::parallel::for_each(watch, ($($y,)+), 1 << 12, |first, ($($y,)+)| {
+                    $crate::dispatch!(s => {
+                        let n = 0;
+                        $(let n = $y.len().max(n);)+
+                        $(let mut $x = Source::over($x, first);)+
+                        $(let mut $y = Sink::over(s, $y);)+
+                        $crate::in_lanes!(s, n, |$($x),+| -> ($($y),+) $body)
+                    })
+                })
+            })
+        })
+    };
+}
+
 /// The array that says which precision a kernel works in.
 pub fn first<'a, 'py>(arrays: &'a Arrays<'py>) -> PyResult<&'a Bound<'py, PyAny>> {
     next(&mut arrays.iter())

@@ -6,11 +6,11 @@
 //! Malley's method, in P. Shirley, R. L. Morley, *Realistic Ray Tracing*, 2003.
 
 use super::disk::{self, Method};
-use crate::real::Real;
+use crate::real::{Lanes, Real};
 use crate::vec::Vec3;
 
 #[inline(always)]
-pub fn square_to_cosine_hemisphere<T: Real>(u: [T; 2], method: Method) -> Vec3<T> {
+pub fn square_to_cosine_hemisphere<V: Lanes>(u: [V; 2], method: Method) -> Vec3<V> {
     let ([x, y], depth) = disk::point_and_depth(u, method);
     Vec3::new(x, y, depth.sqrt())
 }
@@ -23,6 +23,7 @@ pub fn cosine_hemisphere_to_square<T: Real>(direction: Vec3<T>, method: Method) 
 
 /// The density per solid angle of a unit direction: cos θ / π, zero below the horizon.
 #[inline(always)]
-pub fn square_to_cosine_hemisphere_pdf<T: Real>(direction: Vec3<T>) -> T {
-    if direction.z < T::zero() { T::zero() } else { direction.z / T::PI }
+pub fn square_to_cosine_hemisphere_pdf<V: Lanes>(direction: Vec3<V>) -> V {
+    let (z, zero) = (direction.z, direction.z.num(0.0));
+    V::select(z.less(zero), zero, z / z.num(std::f64::consts::PI))
 }

@@ -8,7 +8,7 @@
 
 use super::{below_one, in_square};
 use crate::math;
-use crate::real::Real;
+use crate::real::{Lanes, Real};
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Method {
@@ -18,31 +18,31 @@ pub enum Method {
 
 /// The point of the disk, and its distance from the rim as `(1 - r)(1 + r)` before rounding can spoil it.
 #[inline(always)]
-pub(super) fn point_and_depth<T: Real>(u: [T; 2], method: Method) -> ([T; 2], T) {
-    let (one, two, u) = (T::one(), T::of(2.0), in_square(u));
+pub(super) fn point_and_depth<V: Lanes>(u: [V; 2], method: Method) -> ([V; 2], V) {
+    let (half, one, two) = (u[0].num(0.5), u[0].num(1.0), u[0].num(2.0));
+    let (pi, u) = (u[0].num(std::f64::consts::PI), in_square(u));
     match method {
         Method::Concentric => {
             // Distances from the square's border, exact near it; radius with a sign, so that a wedge and its mirror
             // image share the formula.
-            let half = T::of(0.5);
             let border = [
-                two * T::select(u[0] > half, one - u[0], u[0]),
-                two * T::select(u[1] > half, one - u[1], u[1]),
+                two * V::select(half.less(u[0]), one - u[0], u[0]),
+                two * V::select(half.less(u[1]), one - u[1], u[1]),
             ];
             let [a, b] = [two * u[0] - one, two * u[1] - one];
             // Choices, not branches: which wedge is chance.
-            let wide = !(border[0] >= border[1]);
-            let (r, other) = (T::select(wide, a, b), T::select(wide, b, a));
-            let depth = T::select(wide, border[0], border[1]);
-            let ratio = other / T::select(r == T::zero(), T::one(), r);
-            let (sin, cos) = math::sin_cos(T::PI * T::of(0.25) * ratio);
-            let point = [r * T::select(wide, cos, sin), r * T::select(wide, sin, cos)];
+            let wide = !border[1].less_eq(border[0]);
+            let (r, other) = (V::select(wide, a, b), V::select(wide, b, a));
+            let depth = V::select(wide, border[0], border[1]);
+            let ratio = other / V::select(r.equal(r.num(0.0)), one, r);
+            let (sin, cos) = math::sin_cos(pi * pi.num(0.25) * ratio);
+            let point = [r * V::select(wide, cos, sin), r * V::select(wide, sin, cos)];
             (point, depth * (two - depth))
         }
         Method::Polar => {
             // Counted from the nearer end of the turn: small angles round less.
-            let turn = T::select(u[1] > T::of(0.5), u[1] - one, u[1]);
-            let (sin, cos) = math::sin_cos(two * T::PI * turn);
+            let turn = V::select(half.less(u[1]), u[1] - one, u[1]);
+            let (sin, cos) = math::sin_cos(two * pi * turn);
             let r = u[0].sqrt();
             ([r * cos, r * sin], one - u[0])
         }

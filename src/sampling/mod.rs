@@ -47,15 +47,15 @@ pub mod vogel_disk;
 
 use crate::dispatch;
 use crate::parallel::{self, Interrupted, Rows, Watch};
-use crate::real::Real;
+use crate::real::{Lanes, Real};
 
 /// A point of the closed unit square as it is; NaN beyond it, where no warp holds.
 #[inline(always)]
-fn in_square<T: Real>(u: [T; 2]) -> [T; 2] {
+fn in_square<V: Lanes>(u: [V; 2]) -> [V; 2] {
     // Comparisons by hand: methods of the standard library would be called outside the dispatch.
-    let (zero, one) = (T::zero(), T::one());
-    let inside = (u[0] >= zero) & (u[0] <= one) & (u[1] >= zero) & (u[1] <= one);
-    [T::select(inside, u[0], T::NAN), T::select(inside, u[1], T::NAN)]
+    let (zero, one, nan) = (u[0].num(0.0), u[0].num(1.0), u[0].like(V::Elem::NAN));
+    let inside = zero.less_eq(u[0]) & u[0].less_eq(one) & zero.less_eq(u[1]) & u[1].less_eq(one);
+    [V::select(inside, u[0], nan), V::select(inside, u[1], nan)]
 }
 
 /// Coordinates that rounding brought to one, just below it.

@@ -10,7 +10,7 @@ from numpy.typing import ArrayLike, NDArray
 from .. import _arrays
 from .._arrays import Floats
 from .._kernels import brdf as _kernels
-from ._gather import _gather
+from ._gather import lanewise
 
 __all__ = [
     "Fresnel",
@@ -48,7 +48,7 @@ def fresnel_schlick(cos_theta: ArrayLike, f0: ArrayLike = 0.04, f90: ArrayLike =
     Notes
     -----
     Within 2 ulp of the polynomial. Of Fresnel's equations for glass (η = 1.5, f0 = 0.04) it is within 0.04, of
-    metals coarser past 60°. About 1 ns an element and thread.
+    metals coarser past 60°. About 2 ns a float32 element on one thread (AVX2).
 
     References
     ----------
@@ -59,10 +59,7 @@ def fresnel_schlick(cos_theta: ArrayLike, f0: ArrayLike = 0.04, f90: ArrayLike =
     >>> fresnel_schlick([1.0, 0.5, 0.0], 0.04)
     array([0.04, 0.07, 1.  ])
     """
-    shape, flat, dtype = _gather({}, {"cos_theta": cos_theta, "f0": f0, "f90": f90})
-    out = _arrays.output("out", None, flat[0].shape, dtype)
-    _kernels.fresnel_schlick(*flat, out)
-    return out.reshape(shape)
+    return lanewise(_kernels.fresnel_schlick, {}, {"cos_theta": cos_theta, "f0": f0, "f90": f90}, result=0)
 
 
 def lambert(wi: ArrayLike, wo: ArrayLike, albedo: ArrayLike) -> Floats:
@@ -87,7 +84,7 @@ def lambert(wi: ArrayLike, wo: ArrayLike, albedo: ArrayLike) -> Floats:
 
     Notes
     -----
-    Within 1 ulp. About 2 ns an element and thread. Draw with `shadelab.sampling.square_to_cosine_hemisphere`.
+    Within 1 ulp. About 5 ns a float32 element on one thread (AVX2). Draw with `shadelab.sampling.square_to_cosine_hemisphere`.
 
     References
     ----------
@@ -98,10 +95,7 @@ def lambert(wi: ArrayLike, wo: ArrayLike, albedo: ArrayLike) -> Floats:
     >>> lambert([0, 0.6, 0.8], [0, 0, 1], [1.0, 0.5, 0.0]).round(4)
     array([0.3183, 0.1592, 0.    ])
     """
-    shape, flat, dtype = _gather({"wi": (wi, 3), "wo": (wo, 3), "albedo": (albedo, 3)}, {})
-    out = _arrays.output("out", None, flat[0].shape, dtype)
-    _kernels.lambert(*flat, out)
-    return out.reshape(*shape, 3)
+    return lanewise(_kernels.lambert, {"wi": (wi, 3), "wo": (wo, 3), "albedo": (albedo, 3)}, {})
 
 
 def half_lambert(wi: ArrayLike, albedo: ArrayLike = 1.0, *, exponent: ArrayLike = 2.0) -> Floats:

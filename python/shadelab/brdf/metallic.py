@@ -4,10 +4,9 @@ from __future__ import annotations
 
 from numpy.typing import ArrayLike
 
-from .. import _arrays
 from .._arrays import Floats
 from .._kernels import brdf as _kernels
-from ._gather import _gather
+from ._gather import lanewise
 
 __all__ = ["metallic_roughness", "metallic_roughness_pdf", "metallic_roughness_sample"]
 
@@ -49,8 +48,8 @@ def metallic_roughness(
     -----
     ``(1 - metallic) * (diffuse + mirrors(0.04 * specular)) + metallic * mirrors(base_color)``, where mirrors are `ggx`
     and ``diffuse = base_color / π * (1 - F(cos θi)) * (1 - F(cos θo))``: reciprocal, and gives back at most what came
-    (glTF's factor 1 − F(wo·h) gives back more at grazing). Relative error as of `ggx`. About 6 ns an element and
-    thread.
+    (glTF's factor 1 − F(wo·h) gives back more at grazing). Relative error as of `ggx`. About 13 ns a float32
+    element on one thread (AVX2).
 
     References
     ----------
@@ -62,13 +61,9 @@ def metallic_roughness(
     >>> metallic_roughness([0, 0, 1], [0, 0, 1], [0.8, 0.4, 0.2], metallic=0.0, roughness=1.0).round(4)
     array([0.2379, 0.1205, 0.0619])
     """
-    shape, flat, dtype = _gather(
-        {"wi": (wi, 3), "wo": (wo, 3), "base_color": (base_color, 3)},
-        {"metallic": metallic, "roughness": roughness, "specular": specular},
-    )
-    out = _arrays.output("out", None, flat[0].shape, dtype)
-    _kernels.metallic_roughness("eval", *flat, out)
-    return out.reshape(*shape, 3)
+    vectors: dict[str, tuple[ArrayLike, int]] = {"wi": (wi, 3), "wo": (wo, 3), "base_color": (base_color, 3)}
+    scalars = {"metallic": metallic, "roughness": roughness, "specular": specular}
+    return lanewise(_kernels.metallic_roughness, vectors, scalars)
 
 
 def metallic_roughness_sample(
@@ -103,7 +98,7 @@ def metallic_roughness_sample(
 
     Notes
     -----
-    About 15 ns an element and thread.
+    About 29 ns a float32 element on one thread (AVX2).
 
     References
     ----------
@@ -114,13 +109,9 @@ def metallic_roughness_sample(
     >>> metallic_roughness_sample([0.0, 0.0, 1.0], [0.5, 0.5, 0.9], [0.8, 0.8, 0.8])
     array([0., 0., 1.])
     """
-    shape, flat, dtype = _gather(
-        {"u": (u, 3), "wo": (wo, 3), "base_color": (base_color, 3)},
-        {"metallic": metallic, "roughness": roughness, "specular": specular},
-    )
-    out = _arrays.output("out", None, flat[1].shape, dtype)
-    _kernels.metallic_roughness("sample", *flat, out)
-    return out.reshape(*shape, 3)
+    vectors: dict[str, tuple[ArrayLike, int]] = {"wo": (wo, 3), "u": (u, 3), "base_color": (base_color, 3)}
+    scalars = {"metallic": metallic, "roughness": roughness, "specular": specular}
+    return lanewise(_kernels.metallic_roughness_sample, vectors, scalars)
 
 
 def metallic_roughness_pdf(
@@ -153,17 +144,13 @@ def metallic_roughness_pdf(
 
     Notes
     -----
-    Relative error as of `ggx`. About 5 ns an element and thread.
+    Relative error as of `ggx`. About 9 ns a float32 element on one thread (AVX2).
 
     Examples
     --------
     >>> float(metallic_roughness_pdf([0, 0, 1], [0, 0, 1], [0.8, 0.8, 0.8], specular=0.0).round(4))
     0.3183
     """
-    shape, flat, dtype = _gather(
-        {"wi": (wi, 3), "wo": (wo, 3), "base_color": (base_color, 3)},
-        {"metallic": metallic, "roughness": roughness, "specular": specular},
-    )
-    out = _arrays.output("out", None, flat[3].shape, dtype)
-    _kernels.metallic_roughness("pdf", *flat, out)
-    return out.reshape(shape)
+    vectors: dict[str, tuple[ArrayLike, int]] = {"wi": (wi, 3), "wo": (wo, 3), "base_color": (base_color, 3)}
+    scalars = {"metallic": metallic, "roughness": roughness, "specular": specular}
+    return lanewise(_kernels.metallic_roughness_pdf, vectors, scalars, result=0)

@@ -9,7 +9,7 @@ from numpy.typing import ArrayLike
 from .. import _arrays
 from .._arrays import Floats
 from .._kernels import brdf as _kernels
-from ._gather import _gather
+from ._gather import lanewise
 
 __all__ = ["ggx", "ggx_pdf", "ggx_sample"]
 
@@ -50,7 +50,7 @@ def ggx(
     -----
     Relative error below 12 rounding units for alpha ≥ 1e-9 in float32 (1e-70 in float64), down to grazing cosines of
     1e-7, of the formula at the given (rounded) directions. Light that bounces twice between the mirrors is lost: at
-    alpha = 1 up to 69 %. About 4 ns an element and thread.
+    alpha = 1 up to 69 %. About 7 ns a float32 element on one thread (AVX2).
 
     References
     ----------
@@ -63,12 +63,8 @@ def ggx(
     array([0.3183, 0.3183, 0.3183])
     """
     _arrays.choice("masking", masking, ("height_correlated", "separable"))
-    shape, (wi, wo, f0, alpha), dtype = _gather(
-        {"wi": (wi, 3), "wo": (wo, 3), "f0": (f0, 3)}, {"alpha": alpha}, lows=("alpha",)
-    )
-    out = _arrays.output("out", None, wi.shape, dtype)
-    _kernels.ggx(wi, wo, alpha, f0, masking, out)
-    return out.reshape(*shape, 3)
+    vectors = {"wi": (wi, 3), "wo": (wo, 3), "f0": (f0, 3)}
+    return lanewise(_kernels.ggx, vectors, {"alpha": alpha}, masking, lows=("alpha",))
 
 
 def ggx_sample(wo: ArrayLike, u: ArrayLike, alpha: ArrayLike) -> Floats:
@@ -95,7 +91,7 @@ def ggx_sample(wo: ArrayLike, u: ArrayLike, alpha: ArrayLike) -> Floats:
 
     Notes
     -----
-    `ggx` times the cosine over `ggx_pdf` is at most one. About 15 ns an element and thread.
+    `ggx` times the cosine over `ggx_pdf` is at most one. About 17 ns a float32 element on one thread (AVX2).
 
     References
     ----------
@@ -106,10 +102,7 @@ def ggx_sample(wo: ArrayLike, u: ArrayLike, alpha: ArrayLike) -> Floats:
     >>> ggx_sample([0.0, 0.0, 1.0], [0.0, 0.0], 0.5)
     array([0., 0., 1.])
     """
-    shape, (wo, u, alpha), dtype = _gather({"wo": (wo, 3), "u": (u, 2)}, {"alpha": alpha}, lows=("alpha",))
-    out = _arrays.output("out", None, wo.shape, dtype)
-    _kernels.ggx_sample(wo, u, alpha, out)
-    return out.reshape(*shape, 3)
+    return lanewise(_kernels.ggx_sample, {"wo": (wo, 3), "u": (u, 2)}, {"alpha": alpha}, lows=("alpha",))
 
 
 def ggx_pdf(wi: ArrayLike, wo: ArrayLike, alpha: ArrayLike) -> Floats:
@@ -134,7 +127,7 @@ def ggx_pdf(wi: ArrayLike, wo: ArrayLike, alpha: ArrayLike) -> Floats:
 
     Notes
     -----
-    As accurate as `ggx`. About 4 ns an element and thread.
+    As accurate as `ggx`. About 4 ns a float32 element on one thread (AVX2).
 
     References
     ----------
@@ -145,7 +138,5 @@ def ggx_pdf(wi: ArrayLike, wo: ArrayLike, alpha: ArrayLike) -> Floats:
     >>> float(ggx_pdf([0, 0, 1], [0, 0, 1], 1.0).round(4))
     0.0796
     """
-    shape, (wi, wo, alpha), dtype = _gather({"wi": (wi, 3), "wo": (wo, 3)}, {"alpha": alpha}, lows=("alpha",))
-    out = _arrays.output("out", None, alpha.shape, dtype)
-    _kernels.ggx_pdf(wi, wo, alpha, out)
-    return out.reshape(shape)
+    vectors = {"wi": (wi, 3), "wo": (wo, 3)}
+    return lanewise(_kernels.ggx_pdf, vectors, {"alpha": alpha}, result=0, lows=("alpha",))

@@ -1,63 +1,39 @@
 //! Bindings of rough mirrors: value, sample, density.
 
 use crate::brdf::ggx as rough;
-use crate::python::array::{In, Out, run};
-use crate::real;
-use pyo3::exceptions::PyValueError;
+use crate::brdf::{self, Masking};
+use crate::lanewise;
+use crate::python::array::{Arrays, unknown};
+use crate::real::{Lanes, Real};
 use pyo3::prelude::*;
 
+/// `given`: wi, wo, f0, alpha.
 #[pyfunction]
-pub fn ggx(
-    py: Python<'_>,
-    wi: &Bound<'_, PyAny>,
-    wo: &Bound<'_, PyAny>,
-    alpha: &Bound<'_, PyAny>,
-    f0: &Bound<'_, PyAny>,
-    masking: &str,
-    out: &Bound<'_, PyAny>,
-) -> PyResult<()> {
+pub fn ggx(py: Python<'_>, masking: &str, given: Arrays<'_>, out: Arrays<'_>) -> PyResult<()> {
     let masking = match masking {
-        "height_correlated" => rough::Masking::HeightCorrelated,
-        "separable" => rough::Masking::Separable,
-        other => return Err(PyValueError::new_err(format!("masking: unknown {other:?}"))),
+        "height_correlated" => Masking::HeightCorrelated,
+        "separable" => Masking::Separable,
+        other => return Err(unknown("masking", other)),
     };
-    real!(out, T => {
-        let (wi, wo) = (In::<T>::of("wi", wi)?, In::<T>::of("wo", wo)?);
-        let (alpha, f0) = (In::<T>::of("alpha", alpha)?, In::<T>::of("f0", f0)?);
-        let mut out = Out::<T>::of("out", out)?;
-        let (wi, wo, alpha, f0, out) = (wi.items()?, wo.items()?, alpha.slice()?, f0.items()?, out.items()?);
-        run(py, None, |watch| rough::ggx_many(watch, wi, wo, alpha, f0, masking, out))
+    lanewise!(py, given, out, |wi: 3, wo: 3, f0: 3, alpha: 1| -> (f: 3) {
+        rough::ggx(wi.into(), wo.into(), rough::width(alpha[0]), brdf::color(f0), masking).to_array()
     })
 }
 
+/// `given`: wo, two random numbers, alpha. NaN where `wo` is below the horizon.
 #[pyfunction]
-pub fn ggx_sample(
-    py: Python<'_>,
-    wo: &Bound<'_, PyAny>,
-    u: &Bound<'_, PyAny>,
-    alpha: &Bound<'_, PyAny>,
-    out: &Bound<'_, PyAny>,
-) -> PyResult<()> {
-    real!(out, T => {
-        let (wo, u, alpha) = (In::<T>::of("wo", wo)?, In::<T>::of("u", u)?, In::<T>::of("alpha", alpha)?);
-        let mut out = Out::<T>::of("out", out)?;
-        let (wo, u, alpha, out) = (wo.items()?, u.items()?, alpha.slice()?, out.items()?);
-        run(py, None, |watch| rough::ggx_sample_many(watch, wo, u, alpha, out))
+pub fn ggx_sample(py: Python<'_>, given: Arrays<'_>, out: Arrays<'_>) -> PyResult<()> {
+    lanewise!(py, given, out, |wo: 3, u: 2, alpha: 1| -> (wi: 3) {
+        let (zero, nan) = (wo[2].num(0.0), wo[2].like(<T as Real>::NAN));
+        let alpha = Lanes::select(zero.less(wo[2]), rough::width(alpha[0]), nan);
+        rough::ggx_sample(wo.into(), u, alpha).to_array()
     })
 }
 
+/// `given`: wi, wo, alpha.
 #[pyfunction]
-pub fn ggx_pdf(
-    py: Python<'_>,
-    wi: &Bound<'_, PyAny>,
-    wo: &Bound<'_, PyAny>,
-    alpha: &Bound<'_, PyAny>,
-    out: &Bound<'_, PyAny>,
-) -> PyResult<()> {
-    real!(out, T => {
-        let (wi, wo, alpha) = (In::<T>::of("wi", wi)?, In::<T>::of("wo", wo)?, In::<T>::of("alpha", alpha)?);
-        let mut out = Out::<T>::of("out", out)?;
-        let (wi, wo, alpha, out) = (wi.items()?, wo.items()?, alpha.slice()?, out.slice()?);
-        run(py, None, |watch| rough::ggx_pdf_many(watch, wi, wo, alpha, out))
+pub fn ggx_pdf(py: Python<'_>, given: Arrays<'_>, out: Arrays<'_>) -> PyResult<()> {
+    lanewise!(py, given, out, |wi: 3, wo: 3, alpha: 1| -> (pdf: 1) {
+        [rough::ggx_pdf(wi.into(), wo.into(), rough::width(alpha[0]))]
     })
 }

@@ -3,52 +3,34 @@
 use crate::brdf::fresnel as kernels;
 use crate::brdf::fresnel_average as average;
 use crate::brdf::lambert as diffuse;
-use crate::brdf::reflect as bent;
+use crate::brdf::{self, reflect as bent};
 use crate::elementwise;
-use crate::python::array::{Arrays, In, Out, run};
-use crate::real;
+use crate::lanewise;
+use crate::python::array::Arrays;
 use crate::real::Real;
 use crate::vec::Vec3;
 use pyo3::prelude::*;
 
+/// `given`: cos θ, f0, f90.
 #[pyfunction]
-pub fn fresnel_schlick(
-    py: Python<'_>,
-    cos_theta: &Bound<'_, PyAny>,
-    f0: &Bound<'_, PyAny>,
-    f90: &Bound<'_, PyAny>,
-    out: &Bound<'_, PyAny>,
-) -> PyResult<()> {
-    real!(out, T => {
-        let c = In::<T>::of("cos_theta", cos_theta)?;
-        let (f0, f90) = (In::<T>::of("f0", f0)?, In::<T>::of("f90", f90)?);
-        let mut out = Out::<T>::of("out", out)?;
-        let (c, f0, f90, out) = (c.slice()?, f0.slice()?, f90.slice()?, out.slice()?);
-        run(py, None, |watch| kernels::fresnel_schlick_many(watch, c, f0, f90, out))
+pub fn fresnel_schlick(py: Python<'_>, given: Arrays<'_>, out: Arrays<'_>) -> PyResult<()> {
+    lanewise!(py, given, out, |cos: 1, f0: 1, f90: 1| -> (f: 1) {
+        [kernels::fresnel_schlick(kernels::cosine(cos[0]), f0[0], f90[0])]
     })
 }
 
+/// `given`: wi, wo, albedo.
 #[pyfunction]
-pub fn lambert(
-    py: Python<'_>,
-    wi: &Bound<'_, PyAny>,
-    wo: &Bound<'_, PyAny>,
-    albedo: &Bound<'_, PyAny>,
-    out: &Bound<'_, PyAny>,
-) -> PyResult<()> {
-    real!(out, T => {
-        let (wi, wo) = (In::<T>::of("wi", wi)?, In::<T>::of("wo", wo)?);
-        let albedo = In::<T>::of("albedo", albedo)?;
-        let mut out = Out::<T>::of("out", out)?;
-        let (wi, wo, albedo, out) = (wi.items()?, wo.items()?, albedo.items()?, out.items()?);
-        run(py, None, |watch| diffuse::lambert_many(watch, wi, wo, albedo, out))
+pub fn lambert(py: Python<'_>, given: Arrays<'_>, out: Arrays<'_>) -> PyResult<()> {
+    lanewise!(py, given, out, |wi: 3, wo: 3, albedo: 3| -> (f: 3) {
+        diffuse::lambert(wi.into(), wo.into(), brdf::color(albedo)).to_array()
     })
 }
 
 /// `out`: reflectances across and in the plane, cosine of the refracted ray.
 #[pyfunction]
 pub fn fresnel_dielectric(py: Python<'_>, given: Arrays<'_>, out: Arrays<'_>) -> PyResult<()> {
-    elementwise!(py, given, out, |cos: [T; 1], eta: [T; 1]| -> (s: [T; 1], p: [T; 1], cos_t: [T; 1]) {
+    lanewise!(py, given, out, |cos: 1, eta: 1| -> (s: 1, p: 1, cos_t: 1) {
         let f = kernels::fresnel_dielectric(kernels::cosine(cos[0]), kernels::index(eta[0]));
         ([f.s], [f.p], [f.cos_t])
     })
@@ -57,7 +39,7 @@ pub fn fresnel_dielectric(py: Python<'_>, given: Arrays<'_>, out: Arrays<'_>) ->
 /// `out`: reflectances across and in the plane.
 #[pyfunction]
 pub fn fresnel_conductor(py: Python<'_>, given: Arrays<'_>, out: Arrays<'_>) -> PyResult<()> {
-    elementwise!(py, given, out, |cos: [T; 1], eta: [T; 1], k: [T; 1]| -> (s: [T; 1], p: [T; 1]) {
+    lanewise!(py, given, out, |cos: 1, eta: 1, k: 1| -> (s: 1, p: 1) {
         let f = kernels::fresnel_conductor(kernels::cosine(cos[0]), kernels::index(eta[0]), k[0]);
         ([f.s], [f.p])
     })

@@ -48,6 +48,10 @@ pub mod brdf {
     #[pymodule_export]
     use super::metallic::metallic_roughness;
     #[pymodule_export]
+    use super::metallic::metallic_roughness_pdf;
+    #[pymodule_export]
+    use super::metallic::metallic_roughness_sample;
+    #[pymodule_export]
     use super::model::model_eval;
     #[pymodule_export]
     use super::model::model_pdf;

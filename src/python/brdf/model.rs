@@ -75,7 +75,7 @@ pub fn model_pdf(
     real!(out, T => {
         let (table, wi, wo) = (Table::<T>::of(&table)?, In::<T>::of("wi", wi)?, In::<T>::of("wo", wo)?);
         let mut out = Out::<T>::of("out", out)?;
-        let (wi, wo, out) = (wi.items()?, wo.items()?, out.slice()?);
+        let (wi, wo, out) = (wi.items()?, wo.items()?, out.items()?);
         let rows = table.get(out.len())?;
         run(py, None, |watch| brdf::pdf_many(watch, rows, wi, wo, out))
     })
