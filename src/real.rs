@@ -86,6 +86,8 @@ pub trait Real:
     fn to_f64(self) -> f64;
     /// The low bits of the representation: after adding [`Real::ROUND_MAGIC`], the nearest integer.
     fn low_bits(self) -> i32;
+    /// The representation whose low bits are `i`: a lane that carries an integer.
+    fn of_low_bits(i: i32) -> Self;
     fn floor(self) -> Self;
     /// Lanes that hold integers in [0, 2^22], as integers.
     fn indices<S: Simd>(v: Self::V8<S>) -> [u32; 8];
@@ -196,6 +198,10 @@ macro_rules! scalar {
             #[inline(always)]
             fn low_bits(self) -> i32 {
                 self.to_bits() as i32
+            }
+            #[inline(always)]
+            fn of_low_bits(i: i32) -> $t {
+                <$t>::from_bits(i as u32 as $bits)
             }
             #[inline(always)]
             fn floor(self) -> $t {

@@ -7,6 +7,7 @@
 //! - [`uniform_grid`], [`octree`], [`kd_tree`], [`bsp_tree`]: space parted into cells
 //! - [`offset_ray`]: origins moved off their surface, so that rays do not meet it again
 
+mod batch;
 mod block;
 mod bounds;
 mod nearest;
@@ -29,6 +30,8 @@ pub mod offset_ray;
 pub mod uniform_grid;
 #[cfg_attr(not(feature = "python"), allow(dead_code))] // arrays of rays come from Python alone
 pub(crate) mod query;
+#[cfg_attr(not(feature = "python"), allow(dead_code))] // as those of `query`
+mod squares;
 
 use crate::real::Real;
 pub use bvh::Bvh;

@@ -1,6 +1,7 @@
 //! Arrays of rays in, arrays of hits out: cut into pieces for the threads.
 
 use super::lists::{Lists, OutOfMemory, lists, zeros};
+use super::squares::{Hits, Stretch, stretches, task};
 use super::structure::{Counted, Ordered, Stats, Structure, Uncounted};
 use super::{Hit, Ray};
 use crate::dispatch;
@@ -20,54 +21,8 @@ pub struct Rays<'a, T> {
     pub width: usize,
 }
 
-/// Rows of a picture that are traced together, in squares of as many rays a side: neighbours on both axes run more alike
-/// than those of one row.
-const BAND: usize = 4;
-/// Narrower pictures are taken for lists.
-const NARROW: usize = 32;
-
 /// Rays a task, where every hit is asked for.
 pub const ALL_HITS: usize = 64;
-
-/// The order in which rays of a stretch are traced.
-#[derive(Clone, Copy)]
-struct Order {
-    width: usize,
-    /// The squares of a band, if it is whole; else rays stand as they are.
-    squares: usize,
-}
-
-impl Order {
-    /// The place in the band of the ray that is traced as number `i`.
-    #[inline(always)]
-    fn place(self, i: usize) -> usize {
-        let (square, l) = (i / (BAND * BAND), i % (BAND * BAND));
-        if square < self.squares {
-            l / BAND * self.width + square * BAND + l % BAND
-        } else if self.squares > 0 {
-            // Columns beyond the squares.
-            let rest = i - self.squares * BAND * BAND;
-            rest % BAND * self.width + self.squares * BAND + rest / BAND
-        } else {
-            i
-        }
-    }
-}
-
-/// Stretches of `count` rays that are traced in one order each: first ray, number of rays, order.
-fn stretches(width: usize, count: usize) -> impl Iterator<Item = (usize, usize, Order)> {
-    let band = if width < NARROW { count.max(1) } else { BAND * width };
-    (0..count).step_by(band).map(move |first| {
-        let rays = band.min(count - first);
-        let whole = width >= NARROW && rays == band;
-        (first, rays, Order { width, squares: if whole { width / BAND } else { 0 } })
-    })
-}
-
-/// Rays a task: whole bands of a picture.
-fn task(rays: usize, width: usize) -> usize {
-    if width < NARROW { rays } else { rays.next_multiple_of(BAND * width) }
-}
 
 impl<T: Real> Rays<'_, T> {
     #[inline(always)]
@@ -186,14 +141,9 @@ impl<T: Real, A: Structure<T>> Queries<T> for A {
     ) -> Result<(), Interrupted> {
         parallel::for_each(watch, found, task(self.rays_a_task(), rays.width), |first, mut found| {
             for (start, count, order) in stretches(rays.width, found.len()) {
-                dispatch!(s => self.closest_batch(
-                    s,
-                    count,
-                    #[inline(always)]
-                    |i| rays.get(first + start + order.place(i)),
-                    #[inline(always)]
-                    |i, hit| found.put(start + order.place(i), hit),
-                ))
+                let from = Stretch { rays, start: first + start, order };
+                let to = Hits { found: &mut found, start, order };
+                dispatch!(s => self.closest_batch(s, count, from, to))
             }
         })
     }
@@ -201,13 +151,13 @@ impl<T: Real, A: Structure<T>> Queries<T> for A {
     fn any_hits(&self, watch: &mut dyn Watch, rays: &Rays<T>, out: &mut [bool]) -> Result<(), Interrupted> {
         parallel::for_each(watch, out, task(self.rays_a_task(), rays.width), |first, out: &mut [bool]| {
             for (start, count, order) in stretches(rays.width, out.len()) {
+                let from = Stretch { rays, start: first + start, order };
                 dispatch!(s => self.any_batch(
                     s,
                     count,
+                    from,
                     #[inline(always)]
-                    |i| rays.get(first + start + order.place(i)),
-                    #[inline(always)]
-                    |i, hit| out[start + order.place(i)] = hit,
+                    |i: usize, hit: Hit<T>| out[start + order.place(i)] = hit.is_hit(),
                 ))
             }
         })
@@ -297,22 +247,4 @@ pub fn normals<T: Real>(
             };
         }
     })
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn every_ray_has_its_turn_once() {
-        for width in [0, 1, 4, 31, 32, 33, 34, 35, 70] {
-            for count in [0, 1, 3, 4 * width, 7 * width, 12 * width + 5] {
-                let mut seen = vec![0; count];
-                for (start, rays, order) in stretches(width, count) {
-                    (0..rays).for_each(|i| seen[start + order.place(i)] += 1);
-                }
-                assert!(seen.iter().all(|&n| n == 1), "{width} {count}");
-            }
-        }
-    }
 }

@@ -31,13 +31,22 @@ pub struct Heading {
     pub negative: [usize; 3],
 }
 
+#[inline(always)]
+fn signs<T: Real>(d: [T; 3]) -> [usize; 3] {
+    [(d[0] < T::zero()) as usize, (d[1] < T::zero()) as usize, (d[2] < T::zero()) as usize]
+}
+
 impl Heading {
     #[inline(always)]
     pub fn of<T: Real>(d: [T; 3]) -> Self {
-        Heading {
-            order: permutation(dominant_axis(d)),
-            negative: [(d[0] < T::zero()) as usize, (d[1] < T::zero()) as usize, (d[2] < T::zero()) as usize],
-        }
+        Heading { order: permutation(dominant_axis(d)), negative: signs(d) }
+    }
+
+    /// Whether a direction has the same signs: quicker than the whole of its heading.
+    #[inline(always)]
+    pub fn agrees<T: Real>(self, d: [T; 3]) -> bool {
+        let s = signs(d);
+        (s[0] ^ self.negative[0]) | (s[1] ^ self.negative[1]) | (s[2] ^ self.negative[2]) == 0
     }
 }
 
@@ -201,22 +210,46 @@ pub struct Eight<V> {
 impl<V> Eight<V> {
     #[inline(always)]
     pub fn load<T: Real<V8<S> = V>, S: Simd>(s: S, rays: impl Fn(usize) -> Ray<T>) -> Self {
-        let (mut o, mut d) = ([[T::zero(); 8]; 3], [[T::zero(); 8]; 3]);
-        let (mut low, mut high) = ([T::zero(); 8], [T::zero(); 8]);
-        for l in 0..8 {
-            let ray = rays(l);
-            for k in 0..3 {
-                (o[k][l], d[k][l]) = (ray.origin[k], ray.direction[k]);
-            }
-            (low[l], high[l]) = (ray.t_min, ray.t_max);
+        let r = [rays(0), rays(1), rays(2), rays(3), rays(4), rays(5), rays(6), rays(7)];
+        let runs = [[r[0], r[1], r[2], r[3]], [r[4], r[5], r[6], r[7]]];
+        macro_rules! of_all {
+            ($field:ident) => {
+                [
+                    [runs[0][0].$field, runs[0][1].$field, runs[0][2].$field, runs[0][3].$field],
+                    [runs[1][0].$field, runs[1][1].$field, runs[1][2].$field, runs[1][3].$field],
+                ]
+            };
         }
+        Eight::of_runs(s, of_all!(origin), of_all!(direction), of_all!(t_min), of_all!(t_max))
+    }
+
+    /// From two runs of four rays.
+    #[inline(always)]
+    pub fn of_runs<T: Real<V8<S> = V>, S: Simd>(
+        s: S,
+        o: [[[T; 3]; 4]; 2],
+        d: [[[T; 3]; 4]; 2],
+        low: [[T; 4]; 2],
+        high: [[T; 4]; 2],
+    ) -> Self {
         Eight {
-            origin: [load8(s, &o[0]), load8(s, &o[1]), load8(s, &o[2])],
-            direction: [load8(s, &d[0]), load8(s, &d[1]), load8(s, &d[2])],
-            t_min: load8(s, &low),
-            t_max: load8(s, &high),
+            origin: [axis(s, &o, 0), axis(s, &o, 1), axis(s, &o, 2)],
+            direction: [axis(s, &d, 0), axis(s, &d, 1), axis(s, &d, 2)],
+            t_min: of_eight(s, low),
+            t_max: of_eight(s, high),
         }
     }
+}
+
+#[inline(always)]
+fn of_eight<T: Real, S: Simd>(s: S, [a, b]: [[T; 4]; 2]) -> T::V8<S> {
+    // By value: by way of memory the register would wait for eight separate stores.
+    SimdBase::load_array(s, [a[0], a[1], a[2], a[3], b[0], b[1], b[2], b[3]])
+}
+
+#[inline(always)]
+fn axis<T: Real, S: Simd>(s: S, [a, b]: &[[[T; 3]; 4]; 2], k: usize) -> T::V8<S> {
+    of_eight(s, [[a[0][k], a[1][k], a[2][k], a[3][k]], [b[0][k], b[1][k], b[2][k], b[3][k]]])
 }
 
 #[inline(always)]

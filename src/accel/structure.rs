@@ -4,6 +4,7 @@
 //! A structure is right if its walk hands over every triangle whose own box the ray passes (see [`super::ray`]) before the
 //! visitor's end: then its answers are brute force's to the bit. It may hand over others, and one more than once.
 
+use super::batch::{Sink, Source};
 use super::block::{self, BLOCK, Block};
 use super::lists::OutOfMemory;
 use super::ray::{Heading, Ready, ready};
@@ -165,26 +166,19 @@ pub trait Structure<T: Real>: Send + Sync {
 
     /// Hands every ray's nearest hit to `answer`, in whatever order.
     #[inline(always)]
-    fn closest_batch<S: Simd>(
-        &self,
-        s: S,
-        count: usize,
-        rays: impl Fn(usize) -> Ray<T>,
-        mut answer: impl FnMut(usize, Hit<T>),
-    ) {
-        (0..count).for_each(|i| answer(i, self.closest_hit(s, &rays(i), &mut Uncounted)));
+    fn closest_batch<S: Simd>(&self, s: S, count: usize, rays: impl Source<T>, mut answer: impl Sink<T>) {
+        for i in 0..count {
+            answer.put(i, self.closest_hit(s, &rays.ray(i), &mut Uncounted));
+        }
     }
 
-    /// Hands to `answer` whether each ray hits anything, in whatever order.
+    /// Hands to `answer` a hit of every ray that hits anything, of which only that it is one counts, in whatever order.
     #[inline(always)]
-    fn any_batch<S: Simd>(
-        &self,
-        s: S,
-        count: usize,
-        rays: impl Fn(usize) -> Ray<T>,
-        mut answer: impl FnMut(usize, bool),
-    ) {
-        (0..count).for_each(|i| answer(i, self.any_hit(s, &rays(i), &mut Uncounted)));
+    fn any_batch<S: Simd>(&self, s: S, count: usize, rays: impl Source<T>, mut answer: impl Sink<T>) {
+        for i in 0..count {
+            let hit = self.any_hit(s, &rays.ray(i), &mut Uncounted);
+            answer.put(i, if hit { Hit { face: 0, ..Hit::miss() } } else { Hit::miss() });
+        }
     }
 }
 

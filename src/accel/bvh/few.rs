@@ -3,6 +3,7 @@
 //! rule by which hits are decided is that of all structures (see [`crate::accel::block`]).
 
 use super::single::splat8;
+use crate::accel::batch::{Sink, Source};
 use crate::accel::ray::{Eight, Heading, Ready, load8, prepare, proper, slabs};
 use crate::accel::{Hit, Ray};
 use crate::geometry::ray_triangle::{dominant_axis, permutation, watertight};
@@ -76,16 +77,16 @@ impl<T: Real> Few<T> {
         &self,
         s: S,
         bounds: &[[T; 3]; 2],
-        rays: impl Fn(usize) -> Ray<T>,
+        rays: &impl Source<T>,
         chosen: &[u32],
-        mut answer: impl FnMut(usize, Hit<T>),
+        answer: &mut impl Sink<T>,
     ) {
         // The rays that wait, by dominant axis. What remains at the end is brought up to eight by repetition.
         let mut waiting = [([0usize; 8], 0usize); 3];
         for i in 0..chosen.len() + 3 {
             let ray = chosen.get(i).copied();
             let axis = match ray {
-                Some(ray) => dominant_axis(rays(ray as usize).direction),
+                Some(ray) => dominant_axis(rays.ray(ray as usize).direction),
                 None => i - chosen.len(),
             };
             let (eight, filled) = &mut waiting[axis];
@@ -109,10 +110,10 @@ impl<T: Real> Few<T> {
                 bounds,
                 axis,
                 #[inline(always)]
-                |l| rays(eight[l & 7]),
+                |l| rays.ray(eight[l & 7]),
             );
             for l in 0..lanes {
-                answer(eight[l & 7], hits.get(l));
+                answer.put(eight[l & 7], hits.get(l));
             }
         }
     }

@@ -23,6 +23,7 @@ mod walk;
 #[cfg_attr(not(feature = "python"), allow(dead_code))] // as above
 pub(crate) mod winding;
 
+use super::batch::{List, Sink, Source};
 use super::block::Block;
 use super::{Hit, Ray, bounds, ray};
 use crate::parallel::{self, Interrupted, Watch};
@@ -123,7 +124,7 @@ impl<T: Real> Bvh<T> {
     pub fn closest_hits<S: Simd>(&self, s: S, rays: &[Ray<T>], hits: &mut [Hit<T>]) {
         s.vectorize(
             #[inline(always)]
-            || self.trace_batch::<false, S>(s, rays.len(), |i| rays[i], |i, hit| hits[i] = hit),
+            || self.trace_batch::<false, S>(s, rays.len(), List(rays), |i: usize, hit| hits[i] = hit),
         )
     }
 
@@ -132,7 +133,11 @@ impl<T: Real> Bvh<T> {
     pub fn any_hits<S: Simd>(&self, s: S, rays: &[Ray<T>], hits: &mut [bool]) {
         s.vectorize(
             #[inline(always)]
-            || self.trace_batch::<true, S>(s, rays.len(), |i| rays[i], |i, hit| hits[i] = hit.is_hit()),
+            || {
+                self.trace_batch::<true, S>(s, rays.len(), List(rays), |i: usize, hit: Hit<T>| {
+                    hits[i] = hit.is_hit()
+                })
+            },
         )
     }
 
@@ -143,35 +148,27 @@ impl<T: Real> Bvh<T> {
         &self,
         s: S,
         count: usize,
-        rays: impl Fn(usize) -> Ray<T>,
-        mut answer: impl FnMut(usize, Hit<T>),
+        rays: impl Source<T>,
+        mut answer: impl Sink<T>,
     ) {
         let mut apart: Vec<u32> = Vec::new();
         // Few triangles stop any ray sooner than packets do.
         let packets = if ANY && !self.few.is_empty() { 0 } else { count / packet::SIZE };
         let whole = packets * packet::SIZE;
         for first in (0..whole).step_by(packet::SIZE) {
-            let packet = packet::gather(
-                s,
-                self,
-                #[inline(always)]
-                |l| rays(first + l),
-            );
-            match packet {
+            match packet::gather(s, self, &rays, first) {
                 Some(mut packet) => {
                     packet.trace::<ANY>(s, self);
-                    for l in 0..packet::SIZE {
-                        answer(first + l, packet.hit(l));
-                    }
+                    answer.sixteen(first, &packet.hits(s));
                 }
                 None => apart.extend((first..first + packet::SIZE).map(|i| i as u32)),
             }
         }
         apart.extend((whole..count).map(|i| i as u32));
         if self.few.is_empty() {
-            stream::trace::<ANY, T, S, _, _>(s, self, rays, &apart, answer);
+            stream::trace::<ANY, T, S, _, _>(s, self, &rays, &apart, &mut answer);
         } else {
-            self.few.trace::<ANY, S>(s, &self.bounds, rays, &apart, answer);
+            self.few.trace::<ANY, S>(s, &self.bounds, &rays, &apart, &mut answer);
         }
     }
 

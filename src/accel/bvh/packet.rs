@@ -10,85 +10,97 @@
 use super::Bvh;
 use super::node::{Child, Entry, Node, Stack, key};
 use super::single::{planes, splat8};
-use crate::accel::block::{BLOCK, Block, in_order, own_box};
+use crate::accel::batch::{Sixteen, Source};
+use crate::accel::block::{BLOCK, Block, splat4};
 use crate::accel::ray::{Eight, Heading, Ready, load8, prepare, proper, slabs};
-use crate::accel::{Hit, Ray};
-use crate::geometry::ray_triangle::{along, watertight};
+use crate::geometry::ray_triangle::{Crossing, along, watertight};
 use crate::real::{Lanes, Real};
 use crate::simd::{Simd, SimdBase};
+use std::hint::black_box;
+use std::sync::atomic::{Ordering, compiler_fence};
 
 /// Rays in a packet: two groups of eight lanes.
 pub const SIZE: usize = 16;
 const GROUPS: usize = SIZE / 8;
-/// Rays run alike if they stay this close, as a part of the scene's size, from one side of it to the other.
-const SPREAD: f64 = 0.1;
+/// Rays run alike if they stay this close to the first, as a part of the scene's size, from one side of it to the other.
+const SPREAD: f64 = 0.07;
 
 /// The rays, their nearest hits, and the intervals that hold them.
 pub struct Packet<T: Real, S: Simd> {
     rays: [Ready<T::V8<S>>; GROUPS],
     heading: Heading,
-    ignore: [i32; SIZE],
-    t: [[T; 8]; GROUPS],
-    u: [[T; 8]; GROUPS],
-    v: [[T; 8]; GROUPS],
-    face: [[i32; 8]; GROUPS],
+    /// The faces that rays ignore, if any ignores one.
+    ignore: Option<[i32; SIZE]>,
+    t: [T::V8<S>; GROUPS],
+    u: [T::V8<S>; GROUPS],
+    v: [T::V8<S>; GROUPS],
+    /// Integers in the low bits; what is hit is what `t` says.
+    face: [T::V8<S>; GROUPS],
     /// The origin's extremes that enter earliest and leave latest; the extremes of the reciprocal direction.
-    near: [T; 3],
-    far: [T; 3],
-    inverse: [[T; 3]; 2],
-    t_min: T,
+    near: [T::V8<S>; 3],
+    far: [T::V8<S>; 3],
+    inverse: [[T::V8<S>; 3]; 2],
+    t_min: T::V8<S>,
 }
 
 /// A packet of rays that share their heading and stay close together; None if they do not.
 #[inline(always)]
-pub fn gather<T: Real, S: Simd>(s: S, tree: &Bvh<T>, rays: impl Fn(usize) -> Ray<T>) -> Option<Packet<T, S>> {
-    let heading = Heading::of(rays(0).direction);
+pub fn gather<T: Real, S: Simd>(
+    s: S,
+    tree: &Bvh<T>,
+    rays: &impl Source<T>,
+    first: usize,
+) -> Option<Packet<T, S>> {
+    let heading = Heading::of(rays.direction(first));
     // Most batches without coherence are told apart here.
-    if Heading::of(rays(SIZE - 1).direction) != heading || Heading::of(rays(SIZE / 2).direction) != heading {
+    if !heading.agrees(rays.direction(first + SIZE - 1)) || !heading.agrees(rays.direction(first + SIZE / 2))
+    {
         return None;
     }
     let rays_ready = [
-        gather_group(
-            s,
-            tree,
-            heading,
-            #[inline(always)]
-            |l| rays(l),
-        )?,
-        gather_group(
-            s,
-            tree,
-            heading,
-            #[inline(always)]
-            |l| rays(8 + l),
-        )?,
+        gather_group(tree, heading, rays.eight(s, first))?,
+        gather_group(tree, heading, rays.eight(s, first + 8))?,
     ];
     if !close(tree, heading, &rays_ready) {
         return None;
     }
     let [a, b] = &rays_ready;
-    let (mut near, mut far, mut inverse) = ([T::zero(); 3], [T::zero(); 3], [[T::zero(); 3]; 2]);
+    let zero = splat8::<T, S>(s, T::zero());
+    let (mut near, mut far, mut inverse) = ([zero; 3], [zero; 3], [[zero; 3]; 2]);
     for k in 0..3 {
-        let (near_range, far_range) = (range(a.near[k], b.near[k]), range(a.far[k], b.far[k]));
-        let side = heading.negative[k];
-        (near[k], far[k]) = (near_range[1 - side], far_range[side]);
-        [inverse[0][k], inverse[1][k]] = range(a.inverse[k], b.inverse[k]);
+        let (near_side, far_side) = ([a.near[k], b.near[k]], [a.far[k], b.far[k]]);
+        let (n, f) = if heading.negative[k] == 0 {
+            (greatest::<T, _, S>(near_side), least::<T, _, S>(far_side))
+        } else {
+            (least::<T, _, S>(near_side), greatest::<T, _, S>(far_side))
+        };
+        let slopes = [a.inverse[k], b.inverse[k]];
+        (near[k], far[k]) = (splat8(s, n), splat8(s, f));
+        inverse[0][k] = splat8(s, least::<T, _, S>(slopes));
+        inverse[1][k] = splat8(s, greatest::<T, _, S>(slopes));
     }
-    let mut ignore = [-1; SIZE];
-    for i in 0..SIZE {
-        ignore[i] = rays(i).ignore_face;
+    let mut ignore = None;
+    if rays.ignoring() {
+        let (mut faces, mut greatest) = ([-1; SIZE], -1);
+        for i in 0..SIZE {
+            faces[i] = rays.ray(first + i).ignore_face;
+            greatest = greatest.max(faces[i]);
+        }
+        if greatest >= 0 {
+            ignore = Some(faces);
+        }
     }
     Some(Packet {
         heading,
         ignore,
-        t: [a.t_max.to_array(), b.t_max.to_array()],
-        u: [[T::zero(); 8]; GROUPS],
-        v: [[T::zero(); 8]; GROUPS],
-        face: [[-1; 8]; GROUPS],
+        t: [a.t_max, b.t_max],
+        u: [zero; GROUPS],
+        v: [zero; GROUPS],
+        face: [splat8(s, T::of_low_bits(-1)); GROUPS],
         near,
         far,
         inverse,
-        t_min: range(a.t_min, b.t_min)[0],
+        t_min: splat8(s, least::<T, _, S>([a.t_min, b.t_min])),
         rays: rays_ready,
     })
 }
@@ -96,12 +108,10 @@ pub fn gather<T: Real, S: Simd>(s: S, tree: &Bvh<T>, rays: impl Fn(usize) -> Ray
 /// Eight rays made ready; None if one is no ray or goes another way.
 #[inline(always)]
 fn gather_group<T: Real, S: Simd>(
-    s: S,
     tree: &Bvh<T>,
     heading: Heading,
-    rays: impl Fn(usize) -> Ray<T>,
+    Eight { origin: o, direction: d, t_min: low, t_max: high }: Eight<T::V8<S>>,
 ) -> Option<Ready<T::V8<S>>> {
-    let Eight { origin: o, direction: d, t_min: low, t_max: high } = Eight::load(s, rays);
     let mut same = proper(o, d, low, high) & along(heading.order[2], d);
     for k in 0..3 {
         let negative = d[k].less(d[k].num(0.0));
@@ -113,10 +123,16 @@ fn gather_group<T: Real, S: Simd>(
     Some(prepare(&tree.bounds, o, d, low, high).ready(heading))
 }
 
-/// The least and the greatest of sixteen lanes.
+/// The least of sixteen lanes.
 #[inline(always)]
-fn range<T: Real, V: SimdBase<S, Element = T> + Lanes<Elem = T>, S: Simd>(a: V, b: V) -> [T; 2] {
-    [SimdBase::min(a, b).reduce_min(), SimdBase::max(a, b).reduce_max()]
+fn least<T: Real, V: SimdBase<S, Element = T> + Lanes<Elem = T>, S: Simd>([a, b]: [V; GROUPS]) -> T {
+    SimdBase::min(a, b).reduce_min()
+}
+
+/// The greatest of sixteen lanes.
+#[inline(always)]
+fn greatest<T: Real, V: SimdBase<S, Element = T> + Lanes<Elem = T>, S: Simd>([a, b]: [V; GROUPS]) -> T {
+    SimdBase::max(a, b).reduce_max()
 }
 
 /// Whether the rays pass the first and the last plane of the scene, across the heading, close together.
@@ -124,36 +140,41 @@ fn range<T: Real, V: SimdBase<S, Element = T> + Lanes<Elem = T>, S: Simd>(a: V, 
 fn close<T: Real, S: Simd>(tree: &Bvh<T>, heading: Heading, [a, b]: &[Ready<T::V8<S>>; GROUPS]) -> bool {
     let [low, high] = &tree.bounds;
     let size = (high[0] - low[0]).max(high[1] - low[1]).max(high[2] - low[2]);
-    let limit = size * T::of(SPREAD);
+    let limit = a.scale.like(size * T::of(SPREAD));
+    // Whatever lane: NaN is far from everything.
+    let mut close = Lanes::less_eq(limit, limit);
     for corner in [low, high] {
         let z = a.scale.like(corner[heading.order[2]]);
         let (az, bz) = (z - a.origin.z, z - b.origin.z);
-        let x = range(a.origin.x + a.shear.x * az, b.origin.x + b.shear.x * bz);
-        let y = range(a.origin.y + a.shear.y * az, b.origin.y + b.shear.y * bz);
-        // Also if an end is NaN.
-        if !(x[1] - x[0] <= limit && y[1] - y[0] <= limit) {
-            return false;
-        }
+        let (ax, bx) = (a.origin.x + a.shear.x * az, b.origin.x + b.shear.x * bz);
+        let (ay, by) = (a.origin.y + a.shear.y * az, b.origin.y + b.shear.y * bz);
+        let (x, y) = (ax.like(ax.as_array()[0]), ay.like(ay.as_array()[0]));
+        close = close & Lanes::abs(ax - x).less_eq(limit) & Lanes::abs(bx - x).less_eq(limit);
+        close = close & Lanes::abs(ay - y).less_eq(limit) & Lanes::abs(by - y).less_eq(limit);
     }
-    true
+    T::V8::<S>::bits(close) == 0xff
 }
 
 impl<T: Real, S: Simd> Packet<T, S> {
     /// Traces the rays.
     #[inline(always)]
     pub fn trace<const ANY: bool>(&mut self, s: S, tree: &Bvh<T>) {
-        let mut end = self.end(s);
+        black_box(&mut *self);
+        let mut end = self.end();
+        let (mut turn, mut credit) = (0u32, 0u32);
         let mut stack = Stack::new();
         stack.push(Entry::new(T::zero(), Child::ROOT));
         while let Some(entry) = stack.pop() {
+            // Else the compiler would copy the whole packet to other places of the stack before each stretch of nodes.
+            compiler_fence(Ordering::SeqCst);
             if entry.after(key(end)) {
                 continue;
             }
             let child = entry.child();
             if child.is_leaf() {
-                if self.leaf::<ANY>(s, tree.run(child)) {
-                    end = self.end(s);
-                    if ANY && end < self.t_min {
+                if self.leaf::<ANY>(s, tree.run(child), end) {
+                    end = self.end();
+                    if ANY && end == -T::INFINITY {
                         return;
                     }
                 }
@@ -165,41 +186,56 @@ impl<T: Real, S: Simd> Packet<T, S> {
             while bits != 0 {
                 let i = bits.trailing_zeros() as usize & 7;
                 bits &= bits - 1;
-                if self.any_passes(s, node, i) {
-                    stack.insert(base, Entry::new(entries[i], node.children[i]));
+                // Rays that go very much alike fill their intervals: then one test in four tells whether it still pays.
+                turn = turn.wrapping_add(1);
+                if credit > 0 || turn == 4 {
+                    let passes = self.any_passes(s, node, i);
+                    credit = if passes { credit.saturating_sub(1) } else { 16 };
+                    if !passes {
+                        continue;
+                    }
                 }
+                stack.insert(base, Entry::new(entries[i], node.children[i]));
             }
         }
     }
 
-    /// The answer of one ray.
+    /// The answers.
     #[inline(always)]
-    pub fn hit(&self, i: usize) -> Hit<T> {
-        let (g, l) = (i / 8, i % 8);
-        if self.face[g][l] < 0 {
-            return Hit::miss();
+    pub fn hits(&self, s: S) -> Sixteen<T> {
+        let zero = T::zero();
+        let mut hits = Sixteen { t: [zero; SIZE], u: [zero; SIZE], v: [zero; SIZE], face: [-1; SIZE] };
+        for g in 0..GROUPS {
+            // As in `Ready::finish`. A hit comes before the end.
+            let hit = Lanes::less(self.t[g], self.rays[g].t_max);
+            let t = self.t[g] * self.rays[g].scale + splat8(s, zero);
+            let t = T::V8::<S>::select(hit, t, splat8(s, T::INFINITY));
+            let (at, face) = (8 * g..8 * g + 8, self.face[g].to_array());
+            hits.t[at.clone()].copy_from_slice(&t.to_array());
+            hits.u[at.clone()].copy_from_slice(&self.u[g].to_array());
+            hits.v[at].copy_from_slice(&self.v[g].to_array());
+            for l in 0..8 {
+                hits.face[8 * g + l] = face[l].low_bits();
+            }
         }
-        // As in `Ready::finish`.
-        let t = self.t[g][l] * self.rays[g].scale.as_array()[l] + T::zero();
-        Hit { t, u: self.u[g][l], v: self.v[g][l], face: self.face[g][l] }
+        hits
     }
 
     /// The latest end of all rays.
     #[inline(always)]
-    fn end(&self, s: S) -> T {
-        SimdBase::max(load8::<T, S>(s, &self.t[0]), load8::<T, S>(s, &self.t[1])).reduce_max()
+    fn end(&self) -> T {
+        SimdBase::max(self.t[0], self.t[1]).reduce_max()
     }
 
     /// Children that some ray may pass, as bits, and where none enters earlier.
     #[inline(always)]
     fn children(&self, s: S, node: &Node<T>, end: T) -> (u32, [T; 8]) {
-        let (mut entry, mut exit) = (splat8::<T, S>(s, self.t_min), splat8::<T, S>(s, end));
+        let (mut entry, mut exit) = (self.t_min, splat8::<T, S>(s, end));
         for k in 0..3 {
             let side = self.heading.negative[k];
-            let (least, greatest) =
-                (splat8::<T, S>(s, self.inverse[0][k]), splat8::<T, S>(s, self.inverse[1][k]));
-            let near = planes(s, node, side, k) - splat8::<T, S>(s, self.near[k]);
-            let far = planes(s, node, 1 - side, k) - splat8::<T, S>(s, self.far[k]);
+            let (least, greatest) = (self.inverse[0][k], self.inverse[1][k]);
+            let near = planes(s, node, side, k) - self.near[k];
+            let far = planes(s, node, 1 - side, k) - self.far[k];
             entry = SimdBase::max(entry, SimdBase::min(near * least, near * greatest));
             exit = SimdBase::min(exit, SimdBase::max(far * least, far * greatest));
         }
@@ -209,12 +245,13 @@ impl<T: Real, S: Simd> Packet<T, S> {
     /// Whether any ray passes the box of child `i` before its hit.
     #[inline(always)]
     fn any_passes(&self, s: S, node: &Node<T>, i: usize) -> bool {
-        for (ray, t) in self.rays.iter().zip(&self.t) {
-            let (mut entry, mut exit) = (ray.t_min, load8::<T, S>(s, t));
+        for g in 0..GROUPS {
+            let ray = &self.rays[g];
+            let (mut entry, mut exit) = (ray.t_min, self.t[g]);
             for k in 0..3 {
                 let side = self.heading.negative[k];
-                let near = splat8::<T, S>(s, node.planes[side][k][i]) - ray.near[k];
-                let far = splat8::<T, S>(s, node.planes[1 - side][k][i]) - ray.far[k];
+                let near = splat8::<T, S>(s, node.planes[side & 1][k][i & 7]) - ray.near[k];
+                let far = splat8::<T, S>(s, node.planes[1 - side & 1][k][i & 7]) - ray.far[k];
                 entry = SimdBase::max(entry, near * ray.inverse[k]);
                 exit = SimdBase::min(exit, far * ray.inverse[k]);
             }
@@ -227,23 +264,50 @@ impl<T: Real, S: Simd> Packet<T, S> {
 
     /// Tests the triangles of a leaf one by one; true if a ray's hit came nearer.
     #[inline(always)]
-    fn leaf<const ANY: bool>(&mut self, s: S, blocks: &[Block<T>]) -> bool {
-        let mut nearer = false;
+    fn leaf<const ANY: bool>(&mut self, s: S, blocks: &[Block<T>], end: T) -> bool {
+        let (mut nearer, order) = (false, self.heading.order);
         for block in blocks {
-            for (lane, &face) in block.faces.iter().enumerate() {
-                if face < 0 {
-                    break;
-                }
-                let order = self.heading.order;
+            let OwnBoxes { mut bits, near, far } = self.own_boxes(s, block, end);
+            while bits != 0 {
+                let lane = bits.trailing_zeros() as usize & (BLOCK - 1);
+                bits &= bits - 1;
                 let a = broadcast(s, &block.vertices[0], lane, order);
                 let b = broadcast(s, &block.vertices[1], lane, order);
                 let c = broadcast(s, &block.vertices[2], lane, order);
+                let own = [
+                    [splat8(s, near[0][lane]), splat8(s, near[1][lane]), splat8(s, near[2][lane])],
+                    [splat8(s, far[0][lane]), splat8(s, far[1][lane]), splat8(s, far[2][lane])],
+                ];
                 for g in 0..GROUPS {
-                    nearer |= self.triangle::<ANY>(s, g, face, [a, b, c]);
+                    nearer |= self.triangle::<ANY>(s, g, block.faces[lane], [a, b, c], own);
                 }
             }
         }
         nearer
+    }
+
+    /// The boxes of a block's triangles, by the interval test of [`Self::children`].
+    #[inline(always)]
+    fn own_boxes(&self, s: S, block: &Block<T>, end: T) -> OwnBoxes<T> {
+        let mut boxes = OwnBoxes { bits: 0, near: [[T::zero(); BLOCK]; 3], far: [[T::zero(); BLOCK]; 3] };
+        let (mut entry, mut exit) = (splat4::<T, S>(s, self.t_min.as_array()[0]), splat4::<T, S>(s, end));
+        for k in 0..3 {
+            let [a, b, c] = &block.vertices;
+            let (a, b, c) = (load4::<T, S>(s, &a[k]), load4::<T, S>(s, &b[k]), load4::<T, S>(s, &c[k]));
+            let (lower, upper) = (Lanes::min(Lanes::min(a, b), c), Lanes::max(Lanes::max(a, b), c));
+            let (near, far) = if self.heading.negative[k] == 0 { (lower, upper) } else { (upper, lower) };
+            (boxes.near[k], boxes.far[k]) = (near.to_array(), far.to_array());
+            let (least, greatest) = (
+                splat4::<T, S>(s, self.inverse[0][k].as_array()[0]),
+                splat4::<T, S>(s, self.inverse[1][k].as_array()[0]),
+            );
+            let near = near - splat4::<T, S>(s, self.near[k].as_array()[0]);
+            let far = far - splat4::<T, S>(s, self.far[k].as_array()[0]);
+            entry = SimdBase::max(entry, SimdBase::min(near * least, near * greatest));
+            exit = SimdBase::min(exit, SimdBase::max(far * least, far * greatest));
+        }
+        boxes.bits = T::V4::<S>::bits(Lanes::less_eq(entry, exit));
+        boxes
     }
 
     /// Tests a triangle against a group of rays.
@@ -254,45 +318,87 @@ impl<T: Real, S: Simd> Packet<T, S> {
         g: usize,
         face: i32,
         [a, b, c]: [[T::V8<S>; 3]; 3],
+        [near, far]: [[T::V8<S>; 3]; 2],
     ) -> bool {
         let ray = &self.rays[g];
         let Some((mask, x)) = watertight(ray.origin, ray.shear, a.into(), b.into(), c.into()) else {
             return false;
         };
-        let end = load8::<T, S>(s, &self.t[g]);
+        let end = self.t[g];
         let mask = mask & Lanes::less(ray.t_min, x.t) & Lanes::less_eq(x.t, end);
         if T::V8::<S>::bits(mask) == 0 {
             return false;
         }
         // The triangle's own box, as in `single::leaf`.
-        let order = self.heading.order;
-        let (near, far) = own_box(self.heading, a, b, c);
-        let (entry, exit) = slabs(
-            near,
-            far,
-            in_order(order, ray.near),
-            in_order(order, ray.far),
-            in_order(order, ray.inverse),
-        );
+        let (entry, exit) = slabs(near, far, ray.near, ray.far, ray.inverse);
         let mask = mask & Lanes::less_eq(entry, exit) & Lanes::less_eq(ray.t_min, exit);
         let t = Lanes::max(x.t, entry);
-        let mut bits = T::V8::<S>::bits(mask & Lanes::less_eq(t, end));
-        let (t, u, v) = (t.to_array(), x.u.to_array(), x.v.to_array());
-        let mut nearer = false;
-        while bits != 0 {
-            let l = bits.trailing_zeros() as usize & 7;
-            bits &= bits - 1;
-            let loses = t[l] == self.t[g][l] && face >= self.face[g][l];
-            if loses || self.ignore[8 * g + l] == face {
-                continue;
-            }
-            nearer = true;
-            (self.u[g][l], self.v[g][l], self.face[g][l]) = (u[l], v[l], face);
-            // One hit is enough: before everything, so that the ray meets nothing more.
-            self.t[g][l] = if ANY { -T::INFINITY } else { t[l] };
+        let (better, equal) = (mask & Lanes::less(t, end), mask & t.equal(end));
+        if self.ignore.is_some() || T::V8::<S>::bits(equal) != 0 {
+            return self.one_by_one::<ANY>(s, g, face, mask & Lanes::less_eq(t, end), Crossing { t, ..x });
         }
-        nearer
+        if T::V8::<S>::bits(better) == 0 {
+            return false;
+        }
+        // One hit is enough: before everything, so that the ray meets nothing more.
+        let t = if ANY { splat8(s, -T::INFINITY) } else { t };
+        self.t[g] = T::V8::<S>::select(better, t, end);
+        self.u[g] = T::V8::<S>::select(better, x.u, self.u[g]);
+        self.v[g] = T::V8::<S>::select(better, x.v, self.v[g]);
+        self.face[g] = T::V8::<S>::select(better, splat8(s, T::of_low_bits(face)), self.face[g]);
+        true
     }
+
+    /// Takes the hits of a triangle that may be ignored, or comes as near as another face.
+    #[cold]
+    #[inline(never)]
+    fn one_by_one<const ANY: bool>(
+        &mut self,
+        s: S,
+        g: usize,
+        face: i32,
+        hit: <T::V8<S> as Lanes>::Mask,
+        x: Crossing<T::V8<S>>,
+    ) -> bool {
+        s.vectorize(
+            #[inline(always)]
+            || {
+                let mut bits = T::V8::<S>::bits(hit);
+                let (t, u, v) = (x.t.to_array(), x.u.to_array(), x.v.to_array());
+                let (mut end, mut best_u, mut best_v) =
+                    (self.t[g].to_array(), self.u[g].to_array(), self.v[g].to_array());
+                let mut faces = self.face[g].to_array();
+                let mut nearer = false;
+                while bits != 0 {
+                    let l = bits.trailing_zeros() as usize & 7;
+                    bits &= bits - 1;
+                    let loses = t[l] == end[l] && face >= faces[l].low_bits();
+                    if loses || self.ignore.is_some_and(|ignore| ignore[8 * g + l] == face) {
+                        continue;
+                    }
+                    nearer = true;
+                    (best_u[l], best_v[l], faces[l]) = (u[l], v[l], T::of_low_bits(face));
+                    end[l] = if ANY { -T::INFINITY } else { t[l] };
+                }
+                (self.t[g], self.face[g]) = (load8::<T, S>(s, &end), load8::<T, S>(s, &faces));
+                (self.u[g], self.v[g]) = (load8::<T, S>(s, &best_u), load8::<T, S>(s, &best_v));
+                nearer
+            },
+        )
+    }
+}
+
+#[inline(always)]
+fn load4<T: Real, S: Simd>(s: S, x: &[T; BLOCK]) -> T::V4<S> {
+    SimdBase::load_array_ref(s, x)
+}
+
+/// The boxes of a block's triangles: the planes where the rays enter and leave, and which some ray may pass, as bits. No
+/// other can be hit. Empty lanes are NaN, which passes nothing.
+struct OwnBoxes<T> {
+    bits: u32,
+    near: [[T; BLOCK]; 3],
+    far: [[T; BLOCK]; 3],
 }
 
 /// One vertex of one triangle of a block, for every ray.

@@ -38,7 +38,8 @@ pub fn splat8<T: Real, S: Simd>(s: S, x: T) -> T::V8<S> {
 /// The lower (0) or upper (1) planes of a node's boxes on one axis.
 #[inline(always)]
 pub fn planes<T: Real, S: Simd>(s: S, node: &Node<T>, side: usize, axis: usize) -> T::V8<S> {
-    SimdBase::load_array_ref(s, &node.planes[side][axis])
+    // Masked, so that no bounds are checked.
+    SimdBase::load_array_ref(s, &node.planes[side & 1][axis])
 }
 
 /// The ray through the whole tree.

@@ -3,9 +3,10 @@
 
 use super::node::{Child, Stack, key};
 use super::{Bvh, single};
+use crate::accel::Hit;
+use crate::accel::batch::{Sink, Source};
 use crate::accel::block::leaf;
 use crate::accel::ray::{Eight, Heading, Prepared, Ready, prepare, proper};
-use crate::accel::{Hit, Ray};
 use crate::real::{Lanes, Real};
 use crate::simd::{Simd, SimdBase};
 
@@ -74,7 +75,7 @@ impl<T: Real> Row<T> {
 /// The rays that wait, of which eight at a time are made ready.
 struct Queue<'a, T: Real, R> {
     bounds: &'a [[T; 3]; 2],
-    rays: R,
+    rays: &'a R,
     chosen: &'a [u32],
     /// The next ray to take, the lanes of those that were made ready with it, and those that are no rays.
     next: usize,
@@ -82,9 +83,9 @@ struct Queue<'a, T: Real, R> {
     proper: u32,
 }
 
-impl<'a, T: Real, R: Fn(usize) -> Ray<T>> Queue<'a, T, R> {
+impl<'a, T: Real, R: Source<T>> Queue<'a, T, R> {
     #[inline(always)]
-    fn new<S: Simd>(s: S, bounds: &'a [[T; 3]; 2], rays: R, chosen: &'a [u32]) -> Self {
+    fn new<S: Simd>(s: S, bounds: &'a [[T; 3]; 2], rays: &'a R, chosen: &'a [u32]) -> Self {
         let zero = [T::zero(); 8];
         let lanes = Prepared::all(zero);
         let mut queue = Queue { bounds, rays, chosen, next: 0, lanes, proper: 0 };
@@ -98,7 +99,7 @@ impl<'a, T: Real, R: Fn(usize) -> Ray<T>> Queue<'a, T, R> {
         let Eight { origin, direction, t_min, t_max } = Eight::load(
             s,
             #[inline(always)]
-            |l| (self.rays)(self.chosen[(self.next + l).min(last)] as usize),
+            |l| self.rays.ray(self.chosen[(self.next + l).min(last)] as usize),
         );
         self.proper = T::V8::<S>::bits(proper(origin, direction, t_min, t_max));
         self.lanes = prepare(self.bounds, origin, direction, t_min, t_max).each(
@@ -112,7 +113,7 @@ impl<'a, T: Real, R: Fn(usize) -> Ray<T>> Queue<'a, T, R> {
     fn take<S: Simd>(
         &mut self,
         s: S,
-        answer: &mut impl FnMut(usize, Hit<T>),
+        answer: &mut impl Sink<T>,
     ) -> Option<(usize, i32, (Ready<T>, Heading))> {
         while let Some(&index) = self.chosen.get(self.next) {
             let l = self.next % 8;
@@ -121,10 +122,10 @@ impl<'a, T: Real, R: Fn(usize) -> Ray<T>> Queue<'a, T, R> {
             }
             self.next += 1;
             if self.proper >> l & 1 == 0 {
-                answer(index as usize, Hit::no_ray());
+                answer.put(index as usize, Hit::no_ray());
                 continue;
             }
-            let ray = (self.rays)(index as usize);
+            let ray = self.rays.ray(index as usize);
             let heading = Heading::of(ray.direction);
             let ready = self.lanes.map(
                 heading,
@@ -139,26 +140,26 @@ impl<'a, T: Real, R: Fn(usize) -> Ray<T>> Queue<'a, T, R> {
 
 /// Traces the `chosen` rays and hands each answer, with its ray's index, to `answer`.
 #[inline(always)]
-pub fn trace<const ANY: bool, T: Real, S: Simd, R: Fn(usize) -> Ray<T>, F: FnMut(usize, Hit<T>)>(
+pub fn trace<const ANY: bool, T: Real, S: Simd, R: Source<T>, F: Sink<T>>(
     s: S,
     tree: &Bvh<T>,
-    rays: R,
+    rays: &R,
     chosen: &[u32],
-    mut answer: F,
+    answer: &mut F,
 ) {
     if chosen.is_empty() {
         return;
     }
     let mut queue = Queue::new(s, &tree.bounds, rays, chosen);
     if size_of_val(&*tree.nodes) + size_of_val(&*tree.blocks) < CACHED {
-        while let Some((index, ignore, (ray, heading))) = queue.take(s, &mut answer) {
-            answer(index, ray.finish(single::trace::<ANY, T, S>(s, tree, &ray, heading, ignore)));
+        while let Some((index, ignore, (ray, heading))) = queue.take(s, answer) {
+            answer.put(index, ray.finish(single::trace::<ANY, T, S>(s, tree, &ray, heading, ignore)));
         }
         return;
     }
     let mut rows: Vec<Row<T>> = Vec::with_capacity(ROWS.min(chosen.len()));
     while rows.len() < ROWS
-        && let Some((index, ignore, made)) = queue.take(s, &mut answer)
+        && let Some((index, ignore, made)) = queue.take(s, answer)
     {
         rows.push(Row::new(index, ignore, made));
     }
@@ -170,8 +171,8 @@ pub fn trace<const ANY: bool, T: Real, S: Simd, R: Fn(usize) -> Ray<T>, F: FnMut
                 i += 1;
                 continue;
             }
-            answer(row.index, row.ray.finish(row.hit));
-            match queue.take(s, &mut answer) {
+            answer.put(row.index, row.ray.finish(row.hit));
+            match queue.take(s, answer) {
                 Some((index, ignore, made)) => row.restart(index, ignore, made),
                 None => {
                     rows.swap_remove(i);

@@ -2,9 +2,9 @@
 
 use super::node::{Child, Entry, Stack, key};
 use super::{Bvh, single};
+use crate::accel::batch::{Sink, Source};
 use crate::accel::ray::{Heading, Ready};
 use crate::accel::structure::{Stats, Structure, Visit};
-use crate::accel::{Hit, Ray};
 use crate::real::Real;
 use crate::simd::Simd;
 
@@ -44,24 +44,12 @@ impl<T: Real> Structure<T> for Bvh<T> {
     }
 
     #[inline(always)]
-    fn closest_batch<S: Simd>(
-        &self,
-        s: S,
-        count: usize,
-        rays: impl Fn(usize) -> Ray<T>,
-        answer: impl FnMut(usize, Hit<T>),
-    ) {
+    fn closest_batch<S: Simd>(&self, s: S, count: usize, rays: impl Source<T>, answer: impl Sink<T>) {
         self.trace_batch::<false, S>(s, count, rays, answer);
     }
 
     #[inline(always)]
-    fn any_batch<S: Simd>(
-        &self,
-        s: S,
-        count: usize,
-        rays: impl Fn(usize) -> Ray<T>,
-        mut answer: impl FnMut(usize, bool),
-    ) {
-        self.trace_batch::<true, S>(s, count, rays, |i, hit| answer(i, hit.is_hit()));
+    fn any_batch<S: Simd>(&self, s: S, count: usize, rays: impl Source<T>, answer: impl Sink<T>) {
+        self.trace_batch::<true, S>(s, count, rays, answer);
     }
 }
