@@ -248,7 +248,8 @@ def metropolis_hastings(
     Notes
     -----
     Samples follow the target only in the limit; neighbours in a chain are correlated. Where the target falls to zero
-    between two modes, steps must be wide enough to pass (or leap). About 0.1 µs a step and thread for a picture.
+    between two modes, steps must be wide enough to pass (or leap). About 0.2 µs a step and thread for a picture,
+    and 0.4 more for each sample that is kept, since its correlations are judged.
 
     References
     ----------
