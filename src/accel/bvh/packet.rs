@@ -251,7 +251,7 @@ impl<T: Real, S: Simd> Packet<T, S> {
             for k in 0..3 {
                 let side = self.heading.negative[k];
                 let near = splat8::<T, S>(s, node.planes[side & 1][k][i & 7]) - ray.near[k];
-                let far = splat8::<T, S>(s, node.planes[1 - side & 1][k][i & 7]) - ray.far[k];
+                let far = splat8::<T, S>(s, node.planes[(1 - side) & 1][k][i & 7]) - ray.far[k];
                 entry = SimdBase::max(entry, near * ray.inverse[k]);
                 exit = SimdBase::min(exit, far * ray.inverse[k]);
             }
