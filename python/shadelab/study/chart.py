@@ -119,7 +119,7 @@ def figure(study: Study) -> Figure:
     x, y = _labels(study)
     axes.set_xlabel(x)
     axes.set_ylabel(y)
-    axes.set_title(f"{study.question}: error against time ({study.mask['name']})", fontsize="medium")
+    axes.set_title(f"{study.question}: {study.word} against time ({study.mask['name']})", fontsize="medium")
     axes.grid(alpha=0.2, which="both")
     return made
 
@@ -154,7 +154,7 @@ def svg(study: Study, width: int, height: int, choice: Choice | None = None) -> 
     left, right, top, bottom = 70, 12, 12, 44
     x = _Axis([v for p in points for v in (p.cost.low, p.cost.high)], left, width - right)
     y = _Axis([v for p in points for v in (p.low, p.high)], height - bottom, top)
-    out = [f'<svg class="chart" viewBox="0 0 {width} {height}" width="{width}" role="img" aria-label="error and time">']
+    out = [f'<svg class="chart" viewBox="0 0 {width} {height}" width="{width}" role="img" aria-label="{study.word} and time">']
     for v in x.ticks():
         out.append(f'<line class="grid" x1="{x(v):.1f}" x2="{x(v):.1f}" y1="{top}" y2="{height - bottom}"/>')
         out.append(f'<text x="{x(v):.1f}" y="{height - bottom + 16}" text-anchor="middle">{v:g}</text>')
@@ -164,11 +164,11 @@ def svg(study: Study, width: int, height: int, choice: Choice | None = None) -> 
     x_label, _ = _labels(study)
     out.append(f'<text x="{(left + width - right) / 2}" y="{height - 8}" text-anchor="middle">{x_label}</text>')
     middle = (top + height - bottom) / 2
-    out.append(f'<text x="14" y="{middle}" text-anchor="middle" transform="rotate(-90 14 {middle})">error</text>')
+    out.append(f'<text x="14" y="{middle}" text-anchor="middle" transform="rotate(-90 14 {middle})">{study.word}</text>')
     line = " ".join(f"{x(a):.1f},{y(b):.1f}" for a, b in _stairs(points))
     out.append(f'<polyline class="front" points="{line}"/>')
     for p in sorted(points, key=lambda p: p.on_front):
-        out.append(_mark(p, x, y, choice))
+        out.append(_mark(p, x, y, choice, study.word))
     out += _names(points, x, y, width - right)
     out.append("</svg>")
     return "".join(out)
@@ -192,11 +192,11 @@ def _names(points: list[_Point], x: _Axis, y: _Axis, end: float) -> list[str]:
     return out
 
 
-def _mark(p: _Point, x: _Axis, y: _Axis, choice: Choice | None) -> str:
+def _mark(p: _Point, x: _Axis, y: _Axis, choice: Choice | None, word: str) -> str:
     """A point with its intervals, a shape for its technique, and a title that a pointer shows."""
     color = COLORS[p.technique % len(COLORS)]
     s, px, py = p.summary, x(p.cost.value), y(p.error)
-    title = f"{s.setting}: error {figure_text(s.error.value)}, {figure_text(s.ms.value)} ms"
+    title = f"{s.setting}: {word} {figure_text(s.error.value)}, {figure_text(s.ms.value)} ms"
     bars = (
         f'<path d="M{x(p.cost.low):.1f} {py:.1f}H{x(p.cost.high):.1f}M{px:.1f} {y(p.low):.1f}V{y(p.high):.1f}" '
         f'stroke="{color}" fill="none"/>'
@@ -225,7 +225,7 @@ def cases_svg(study: Study, settings: Sequence[tuple[str, dict[str, Any]]], widt
     step = step if wide else 40
     height = top + step * len(study.cases) + 34
     x = _Axis([floor, *seen], left, width - 12)
-    out = [f'<svg class="chart" viewBox="0 0 {width} {height}" width="{width}" role="img" aria-label="error by case">']
+    out = [f'<svg class="chart" viewBox="0 0 {width} {height}" width="{width}" role="img" aria-label="{study.word} by case">']
     for v in x.ticks():
         out.append(f'<line class="grid" x1="{x(v):.1f}" x2="{x(v):.1f}" y1="{top}" y2="{height - 34}"/>')
         out.append(f'<text x="{x(v):.1f}" y="{height - 16}" text-anchor="middle">{v:g}</text>')
@@ -239,7 +239,7 @@ def cases_svg(study: Study, settings: Sequence[tuple[str, dict[str, Any]]], widt
                 e, color = record.error, COLORS[i % len(COLORS)]
                 low, high = (x(max(v, floor)) for v in (e.low, e.high))
                 fill = f'fill="{color}"' if first[i] == name else 'fill="none" stroke-width="1.5"'
-                title = f"{name}, {case.name}: error {figure_text(e.value)}"
+                title = f"{name}, {case.name}: {study.word} {figure_text(e.value)}"
                 out.append(
                     f'<g opacity="0.85"><title>{html.escape(title)}</title>'
                     f'<path d="M{low:.1f} {y:.1f}H{high:.1f}" stroke="{color}" fill="none"/>'

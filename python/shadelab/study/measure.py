@@ -250,6 +250,7 @@ def _run(plan: _Plan, cases: list[Case], progress: Any) -> Study:
             "aggregate": question.metric.aggregate,
             "low": question.metric.signs[0],
             "high": question.metric.signs[1],
+            "word": question.metric.word,
         },
         {"name": question.mask.name, "about": question.mask.about},
         tuple(records),

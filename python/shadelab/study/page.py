@@ -294,7 +294,7 @@ def _machine(study: Study) -> str:
 
 def _glossary(study: Study) -> str:
     entries = [
-        (f"error: {study.metric['name']}", study.metric["about"]),
+        (f"{study.word}: {study.metric['name']}", study.metric["about"]),
         (f"mask: {study.mask['name']}", study.mask["about"]),
     ]
     entries += [(n, t) for n, t in study.also.items() if t]

@@ -50,6 +50,8 @@ class Metric:
         Root of the mean square, mean magnitude, or largest magnitude over the mask.
     signs : (str, str)
         What a negative and a positive residual mean.
+    word : str
+        What tables and charts call the figure, where it is no error but a price.
     """
 
     name: str
@@ -58,6 +60,7 @@ class Metric:
     about: str = ""
     aggregate: Literal["rms", "mean", "max"] = "rms"
     signs: tuple[str, str] = ("too dark", "too bright")
+    word: str = "error"
 
 
 @dataclass(frozen=True)

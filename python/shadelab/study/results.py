@@ -244,6 +244,11 @@ class Study:
             worst.external,
         )
 
+    @property
+    def word(self) -> str:
+        """What the judged figure is called: "error", or the name of a price."""
+        return self.metric.get("word", "error")
+
     def cost_unit(self) -> CostUnit:
         """How times are shown: milliseconds a frame, or nanoseconds an element where answers are no pictures."""
         element, counts = self.settings.get("element", "pixel"), {c.elements for c in self.cases}

@@ -40,7 +40,7 @@ def _rows(study: Study, part: str = "") -> tuple[list[str], list[tuple[Summary, 
     unit = study.cost_unit()
     heads = _chosen(
         part,
-        ["error", "95 %"],
+        [study.word, "95 %"],
         ["worst in"] if many else [],
         ["least"] if many else [],
         ["bias", "noise", "precision", "whole frame"],
@@ -90,7 +90,7 @@ def _legend(study: Study) -> list[str]:
     worst = f"worst of {len(study.cases)} cases" if len(study.cases) > 1 else study.cases[0].name if study.cases else ""
     unit = f" ({study.metric['unit']})" if study.metric["unit"] else ""
     return [
-        f"error: {study.metric['name']}{unit}, over: {study.mask['name']}; {worst}",
+        f"{study.word}: {study.metric['name']}{unit}, over: {study.mask['name']}; {worst}",
         f"{study.cost_unit().short}: median, preparation included, on {m['threads']} threads of {m['cpu']} "
         f"({m['simd']}); ranks may differ on a GPU",
     ]
@@ -120,21 +120,21 @@ def cases_table(study: Study, settings: Sequence[tuple[str, dict[str, Any]]]) ->
     also, _ = _columns(study)
     unit = study.cost_unit()
     tables = []
-    for title in ["error", *also, unit.short]:
+    for title in [study.word, *also, unit.short]:
         rows = [["", *names]]
         for case in study.cases:
             records = [found.get((case.key, name)) for name in names]
-            rows.append([case.name, *(_figure(r, title, also, unit.per_ms) for r in records)])
+            rows.append([case.name, *(_figure(r, title, study.word, also, unit.per_ms) for r in records)])
         tables.append((title, rows))
     return tables
 
 
-def _figure(record: Record | None, title: str, also: list[str], per_ms: float) -> str:
+def _figure(record: Record | None, title: str, word: str, also: list[str], per_ms: float) -> str:
     if record is None:
         return "–"
     if title in also:
         return figure_text(record.also.get(title))
-    return figure_text(record.error.value if title == "error" else record.ms.value * per_ms)
+    return figure_text(record.error.value if title == word else record.ms.value * per_ms)
 
 
 def case_text(study: Study) -> str:

@@ -34,9 +34,13 @@ def find(name: str) -> Question:
 
     Raises
     ------
+    TypeError
+        If the name is not a string.
     ValueError
         If there is none of that name.
     """
+    if not isinstance(name, str):
+        raise TypeError(f"question: expected a name, got {type(name).__name__}")
     plain = name.strip().lower().replace("-", " ").replace("_", " ")
     if plain not in questions():
         raise ValueError(f"question: expected one of {', '.join(map(repr, questions()))}, got {name!r}")

@@ -172,7 +172,7 @@ def question() -> Question:
         "acceleration",
         SCENES,
         lambda inputs: np.zeros(1),
-        Metric("time of the build", _price, "ms", _line(_METRIC_ABOUT), "max"),
+        Metric("time of the build", _price, "ms", _line(_METRIC_ABOUT), "max", word="build time"),
         _candidates(),
         views=lambda name, scene: RAYS,
         setup=_setup,
