@@ -201,8 +201,8 @@ def face_normals(positions: ArrayLike, faces: ArrayLike, *, out: NDArray[Any] | 
 def vertex_normals(
     positions: ArrayLike,
     faces: ArrayLike,
-    weights: Literal["angle", "area", "uniform"] = "angle",
     *,
+    weights: Literal["angle", "area", "uniform"] = "angle",
     out: NDArray[Any] | None = None,
 ) -> Floats:
     """Unit normals of vertices: weighted means of the normals of the faces around each.

@@ -38,7 +38,7 @@ def test_tree_equals_brute_force_to_the_bit(dtype, kind, level, method):
     p, f = soup(rng, 700, dtype)
     o, d = rays_of(kind, rng, 4096)
     expected = sl.accel.brute_force(p, f, o, d)
-    bvh = sl.accel.BVH(p, f, method)
+    bvh = sl.accel.BVH(p, f, method=method)
     with sl.simd(level):
         hit = bvh.closest_hit(o, d)
         assert same_bits(hit, expected)
@@ -180,7 +180,7 @@ def test_every_builder_holds_whatever_the_mesh(method, dtype):
         p = p.astype(dtype)
         # At the mesh, from near by, so that small parts are met too.
         at = p[rng.integers(len(p), size=2000)]
-        hit = sl.accel.BVH(p, f, method).closest_hit(at - 1e-3 * d, d)
+        hit = sl.accel.BVH(p, f, method=method).closest_hit(at - 1e-3 * d, d)
         assert same_bits(hit, sl.accel.brute_force(p, f, at - 1e-3 * d, d)), name
 
 
@@ -191,7 +191,7 @@ def test_trees_do_not_depend_on_threads(method):
     found = []
     for n in (1, 3):
         sl.set_threads(n)
-        bvh = sl.accel.BVH(p, f, method)
+        bvh = sl.accel.BVH(p, f, method=method)
         o, d = np.random.default_rng(13).normal(size=(2, 3000, 3))
         found.append((bvh.stats()._replace(build_ms=0), bvh.counts(o, d)))
     sl.set_threads(None)

@@ -8,7 +8,7 @@ import pytest
 import shadelab as sl
 import trimesh
 
-DATA = Path(os.environ.get("SHADELAB_DATA", Path(__file__).resolve().parents[3] / "shared/data"))
+DATA = Path(os.environ.get("SHADELAB_DATA") or Path(__file__).resolve().parents[3] / "shared/data")
 MODELS = ["bunny.obj", "fandisk.obj", "spot.obj", "suzanne.obj", "teapot.obj"]
 pytestmark = pytest.mark.skipif(not DATA.is_dir(), reason="the shared data is absent: set SHADELAB_DATA")
 

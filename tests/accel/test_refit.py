@@ -26,7 +26,7 @@ def same_bits(a, b):
 def test_moved_meshes_are_hit_as_by_brute_force(dtype, method, faces):
     rng = np.random.default_rng(1)
     p, f = soup(rng, faces, dtype)
-    bvh = sl.accel.BVH(p, f, method)
+    bvh = sl.accel.BVH(p, f, method=method)
     moved = (p[:, [1, 2, 0]] * [3, 1, -1] + rng.normal(size=p.shape) * 0.1).astype(dtype)
     refitted = bvh.refit(moved)
     o, d = rng.normal(size=(2, 2000, 3))

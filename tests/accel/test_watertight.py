@@ -103,7 +103,7 @@ def test_the_aim_is_good_enough_to_slip_past_other_tests():
     a, b = p[f[face, 0]].astype(float), p[f[face, 1]].astype(float)
     o = rng.uniform(-0.2, 0.2, (1500, 3)).astype(np.float32)
     d = (a + rng.uniform(size=(1500, 1)) * (b - a) - o).astype(np.float32)
-    t = sl.geometry.ray_triangle(o[:, None], d[:, None], *(p[f[:, k]] for k in range(3)), "moller_trumbore").t
+    t = sl.geometry.ray_triangle(o[:, None], d[:, None], *(p[f[:, k]] for k in range(3)), method="moller_trumbore").t
     assert np.isinf(t).all(1).any()
 
 

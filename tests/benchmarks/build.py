@@ -70,7 +70,7 @@ def main():
         v, f = bumpy_sphere(size)
         (sah, _), (theirs, _) = race(lambda v=v, f=f: sl.accel.BVH(v, f), lambda v=v, f=f: embree(v, f), args.repeats)
         (sah2, _), (lbvh, _) = race(
-            lambda v=v, f=f: sl.accel.BVH(v, f), lambda v=v, f=f: sl.accel.BVH(v, f, "lbvh"), args.repeats
+            lambda v=v, f=f: sl.accel.BVH(v, f), lambda v=v, f=f: sl.accel.BVH(v, f, method="lbvh"), args.repeats
         )
         double = v.astype(np.float64)
         (sah3, _), (wide, _) = race(
@@ -79,7 +79,7 @@ def main():
         o, d = random_rays(v, 1_000_000)
         times = []
         for method in ("sah", "median", "lbvh"):
-            bvh = sl.accel.BVH(v, f, method)
+            bvh = sl.accel.BVH(v, f, method=method)
             bvh.closest_hit(o, d)
             times.append(
                 np.median([timed(lambda b=bvh, o=o, d=d: b.closest_hit(o, d))[1] for _ in range(args.repeats)]) * 1e3

@@ -19,7 +19,7 @@ import open3d as o3d
 import shadelab as sl
 import trimesh
 
-DATA = Path(os.environ.get("SHADELAB_DATA", Path(__file__).resolve().parents[3] / "shared/data"))
+DATA = Path(os.environ.get("SHADELAB_DATA") or Path(__file__).resolve().parents[3] / "shared/data")
 
 
 def box_of_boxes():

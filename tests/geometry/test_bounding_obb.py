@@ -36,7 +36,7 @@ def test_no_point_is_outside(dtype, method, shift):
     rng = np.random.default_rng(1)
     for n in (1, 2, 3, 4, 50):
         p = (rng.normal(size=(20, n, 3)) * [1, 5, 0.1] + shift).astype(dtype)
-        box = geometry.bounding_obb(p, method)
+        box = geometry.bounding_obb(p, method=method)
         none_outside(p, box)
         gram = box.axes @ np.swapaxes(box.axes, -1, -2)
         assert np.allclose(gram, np.eye(3), atol=4 * np.finfo(dtype).eps)
@@ -53,7 +53,7 @@ def test_a_turned_box_is_found(dtype, method):
     p = (np.concatenate([np.broadcast_to(corners, (40, 8, 3)), inner], 1) @ turns + rng.normal(size=(40, 1, 3))).astype(
         dtype
     )
-    got = volume(geometry.bounding_obb(p, method))
+    got = volume(geometry.bounding_obb(p, method=method))
     assert np.allclose(got, 48, rtol=1e-5 if dtype == np.float32 else 1e-12)
 
 
@@ -66,7 +66,7 @@ def test_calipers_are_never_looser_and_close_to_the_best_known():
             if k % 2
             else rng.uniform(-1, 1, (40, 3)) * [1, 2, 4] @ Rotation.random(rng=rng).as_matrix()
         )
-        ours = {m: volume(geometry.bounding_obb(p, m)) for m in METHODS}
+        ours = {m: volume(geometry.bounding_obb(p, method=m)) for m in METHODS}
         assert ours["calipers"] <= min(ours["dito"], ours["pca"]) * (1 + 1e-9)
         # trimesh tries every face of the hull.
         ratios.append(ours["calipers"] / np.prod(trimesh.bounds.oriented_bounds(p)[1]))
@@ -79,13 +79,13 @@ def test_flat_sets_have_flat_boxes(method):
     turn = Rotation.random(rng=rng).as_matrix()
     square = np.array([[-1, -1, 0], [1, -1, 0], [1, 1, 0], [-1, 1, 0.0]])
     many = np.concatenate([square * [2, 1, 1], rng.uniform(-1, 1, (50, 3)) * [2, 1, 0]])
-    half = np.sort(geometry.bounding_obb(many @ turn + 5, method).half_extents)
+    half = np.sort(geometry.bounding_obb(many @ turn + 5, method=method).half_extents)
     assert half[0] < 1e-13
     if method == "calipers":
         assert np.allclose(half[1:], [1, 2], rtol=1e-12)
-    line = np.sort(geometry.bounding_obb(np.outer([0, 1, 5.0], [1, 2, 2]), method).half_extents)
+    line = np.sort(geometry.bounding_obb(np.outer([0, 1, 5.0], [1, 2, 2]), method=method).half_extents)
     assert np.allclose(line, [0, 0, 7.5], atol=1e-12)
-    point = geometry.bounding_obb([[1, 2, 3.0]] * 4, method)
+    point = geometry.bounding_obb([[1, 2, 3.0]] * 4, method=method)
     assert np.array_equal(point.center, [1, 2, 3]) and not point.half_extents.any()
 
 
@@ -93,7 +93,7 @@ def test_flat_sets_have_flat_boxes(method):
 @pytest.mark.parametrize("method", METHODS)
 def test_sets_of_any_size(size, method):
     p = np.random.default_rng(5).normal(size=(50, 3))
-    one, other = geometry.bounding_obb(p, method), geometry.bounding_obb(size * p, method)
+    one, other = geometry.bounding_obb(p, method=method), geometry.bounding_obb(size * p, method=method)
     assert np.allclose(other.half_extents, size * one.half_extents, rtol=1e-12, atol=0)
 
 

@@ -44,7 +44,7 @@ def test_no_point_is_outside(dtype, method, shift):
     rng = np.random.default_rng(1)
     for n in (1, 2, 3, 5, 40):
         p = (rng.normal(size=(20, n, 3)) + shift).astype(dtype)
-        none_outside(p, geometry.bounding_sphere(p, method))
+        none_outside(p, geometry.bounding_sphere(p, method=method))
 
 
 @settings(max_examples=150, deadline=None)
@@ -84,7 +84,7 @@ def test_sets_of_any_size(size):
 
 def test_ritter_is_larger_but_not_by_much():
     p = np.random.default_rng(4).normal(size=(200, 100, 3))
-    ratio = geometry.bounding_sphere(p, "ritter").radius / geometry.bounding_sphere(p).radius
+    ratio = geometry.bounding_sphere(p, method="ritter").radius / geometry.bounding_sphere(p).radius
     assert (ratio >= 1 - 1e-12).all() and ratio.mean() < 1.15
 
 

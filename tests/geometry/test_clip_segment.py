@@ -41,7 +41,9 @@ def test_grids_where_corners_are_touched(method, n):
         low, high = np.minimum(one, other).astype(float), np.maximum(one, other).astype(float)
         expected = left(p, q, low, high)
         for dtype in (np.float32, np.float64):
-            got = geometry.clip_segment(*(np.array(x, dtype) for x in (p, q, low, high)), method, full_output=True)
+            got = geometry.clip_segment(
+                *(np.array(x, dtype) for x in (p, q, low, high)), method=method, full_output=True
+            )
             assert bool(got.hit) == (expected is not None)
             if expected is None:
                 assert np.isnan(got.start).all() and np.isnan(got.t).all()
@@ -68,7 +70,7 @@ def test_lines_through_corners_within_rounding(dtype, method, shift):
     edge[np.arange(count), k] = rng.uniform(0, 64, count)
     out = (edge - 32) * [[1, -1, 1]] * rng.uniform(0.5, 2, (count, 3))
     p, q = ((edge + s * out + shift).astype(dtype) for s in (1.0, -0.7))
-    got = geometry.clip_segment(p, q, low, high, method, full_output=True)
+    got = geometry.clip_segment(p, q, low, high, method=method, full_output=True)
     exact = [left(*x) for x in zip(p, q, low, high, strict=True)]
     assert got.hit.tolist() == [x is not None for x in exact] and 30 < got.hit.sum() < 290
     hit = got.hit

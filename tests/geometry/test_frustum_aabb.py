@@ -12,7 +12,7 @@ from shadelab import geometry, transform
 def scene(dtype, depth, far=30.0, shift=0.0):
     view = transform.look_at([3 + shift, 2, 5.0], [shift, 1, 0])
     m = (transform.perspective(fov_y=1.0, aspect=1.5, near=0.5, far=far, depth=depth) @ view).astype(dtype)
-    return m, geometry.frustum_planes(m, depth)
+    return m, geometry.frustum_planes(m, depth=depth)
 
 
 def shows(m, p, depth):

@@ -40,7 +40,7 @@ def test_there_and_back_to_three_roundings(dtype):
 def test_largest_angle_by_bits(dtype, bits, precise, nearest):
     v = directions(100000)
     for rounding, bound in (("precise", precise), ("nearest", nearest)):
-        codes = sl.geometry.octahedral_encode(v.astype(dtype), bits, rounding)
+        codes = sl.geometry.octahedral_encode(v.astype(dtype), bits, rounding=rounding)
         assert codes.dtype == (np.int8 if bits <= 8 else np.int16) and np.abs(codes.astype(int)).max() < 2 ** (bits - 1)
         found = np.degrees(angle(sl.geometry.octahedral_decode(codes, bits, dtype=np.float64), v)).max()
         # Of the docstring's table; a hundred thousand directions come near the largest.
@@ -57,7 +57,9 @@ def test_precise_codes_are_the_best_of_the_four_around(dtype, bits):
     four = np.clip([low + np.array([i, j]) for i in (0, 1) for j in (0, 1)], -scale, scale) / scale
     best = angle(sl.geometry.octahedral_decode(four), v).min(0)
     assert np.abs(got - best).max() < 1e-5
-    plain = sl.geometry.octahedral_decode(sl.geometry.octahedral_encode(v, bits, "nearest"), bits, dtype=np.float64)
+    plain = sl.geometry.octahedral_decode(
+        sl.geometry.octahedral_encode(v, bits, rounding="nearest"), bits, dtype=np.float64
+    )
     assert (got <= angle(plain, v) + 1e-6).all()
 
 
@@ -91,7 +93,7 @@ def test_bad_options_are_named():
     with pytest.raises(ValueError, match="bits: expected an integer from 2 to 24"):
         sl.geometry.octahedral_encode([0, 0, 1], 25)
     with pytest.raises(ValueError, match="rounding: expected one of"):
-        sl.geometry.octahedral_encode([0, 0, 1], 8, "floor")
+        sl.geometry.octahedral_encode([0, 0, 1], 8, rounding="floor")
     with pytest.raises(TypeError, match="codes: expected bits="):
         sl.geometry.octahedral_decode(np.array([1, 2], np.int8))
     with pytest.raises(TypeError, match="codes: expected integers"):

@@ -31,7 +31,7 @@ def exact(p, polygon):
 
 def check(points, polygon):
     place = sl.geometry.point_in_polygon(points, polygon, full_output=True)
-    turned = sl.geometry.point_in_polygon(points, polygon, "winding", border=False)
+    turned = sl.geometry.point_in_polygon(points, polygon, rule="winding", border=False)
     for i, p in enumerate(points):
         border, winding, crossings = exact(p, polygon)
         assert place.on_border[i] == border and place.winding[i] == winding
@@ -79,7 +79,7 @@ def test_rules_differ_where_the_border_turns_twice():
     star = np.stack([np.cos(angle), np.sin(angle)], -1)
     place = sl.geometry.point_in_polygon([0, 0], star, full_output=True)
     assert not place.inside and place.winding == 2
-    assert sl.geometry.point_in_polygon([0, 0], star, "winding")
+    assert sl.geometry.point_in_polygon([0, 0], star, rule="winding")
     assert sl.geometry.point_in_polygon([0, 0], star[::-1], full_output=True).winding == -2
 
 
@@ -109,7 +109,7 @@ def test_nan_and_bad_arguments():
     with pytest.raises(ValueError, match=r"polygon: expected shape \(\.\.\., n, 2\)"):
         sl.geometry.point_in_polygon([1, 1], np.zeros((0, 2)))
     with pytest.raises(ValueError, match="rule: expected one of"):
-        sl.geometry.point_in_polygon([1, 1], square, "odd")
+        sl.geometry.point_in_polygon([1, 1], square, rule="odd")
 
 
 def test_exact_means_more_than_doubles_could_tell():

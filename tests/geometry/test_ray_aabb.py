@@ -65,7 +65,7 @@ def test_lines_through_edges_and_corners_are_decided_exactly(dtype):
     o = rng.normal(size=(400, 3)).astype(dtype) * 4
     d = corner - o
     hit = sl.geometry.ray_aabb(o, d, lower, upper)
-    textbook = sl.geometry.ray_aabb(o, d, lower, upper, "slabs")
+    textbook = sl.geometry.ray_aabb(o, d, lower, upper, method="slabs")
     for i in range(400):
         check(o[i], d[i], lower[i], upper[i], type(hit)(*(x[i] for x in hit)), float(np.finfo(dtype).eps))
     # The textbook's products decide otherwise here and there.
@@ -82,7 +82,7 @@ def test_conservative_loses_no_box(dtype, shift):
     o = (rng.normal(size=(5000, 3)) * 4 + shift).astype(dtype)
     d = corner - o
     met = np.isfinite(sl.geometry.ray_aabb(o, d, lower, upper).t_enter)
-    kept = np.isfinite(sl.geometry.ray_aabb(o, d, lower, upper, "conservative").t_enter)
+    kept = np.isfinite(sl.geometry.ray_aabb(o, d, lower, upper, method="conservative").t_enter)
     # Far away the coordinates are so coarse that differences are exact, and so are lines through corners.
     assert kept[met].all() and ((kept != met).any() or shift)
 
@@ -91,23 +91,23 @@ def test_conservative_loses_no_box(dtype, shift):
 @pytest.mark.parametrize("method", ["exact", "conservative"])
 def test_rays_within_faces_and_along_edges_hit(d, method):
     o = np.array([[-1, 0, 0.5], [-1, 1, 0.5], [-1, 0, 0], [-1, 1, 1], [-1, 0.5, 0.5]], float)
-    assert (sl.geometry.ray_aabb(o, d, [0, 0, 0], [1, 1, 1], method).t == 1).all()
+    assert (sl.geometry.ray_aabb(o, d, [0, 0, 0], [1, 1, 1], method=method).t == 1).all()
     outside = o + np.array([0, 1.5, 0])
-    assert np.isinf(sl.geometry.ray_aabb(outside, d, [0, 0, 0], [1, 1, 1], method).t).all()
+    assert np.isinf(sl.geometry.ray_aabb(outside, d, [0, 0, 0], [1, 1, 1], method=method).t).all()
 
 
 def test_the_textbook_loses_rays_within_a_face():
-    assert np.isinf(sl.geometry.ray_aabb([-1, 0, 0.5], [1.0, 0, 0], [0, 0, 0], [1, 1, 1], "slabs").t)
+    assert np.isinf(sl.geometry.ray_aabb([-1, 0, 0.5], [1.0, 0, 0], [0, 0, 0], [1, 1, 1], method="slabs").t)
 
 
 @pytest.mark.parametrize("method", ["exact", "conservative"])
 def test_boxes_of_zero_thickness(method):
     flat = ([0, 0, 0.25], [1, 1, 0.25])
-    assert sl.geometry.ray_aabb([0.5, 0.5, 1], [0, 0, -3.0], *flat, method).t == 0.25
-    assert sl.geometry.ray_aabb([-1, 0.5, 0.25], [1.0, 0, 0], *flat, method).t == 1
+    assert sl.geometry.ray_aabb([0.5, 0.5, 1], [0, 0, -3.0], *flat, method=method).t == 0.25
+    assert sl.geometry.ray_aabb([-1, 0.5, 0.25], [1.0, 0, 0], *flat, method=method).t == 1
     point = ([0.1, 0.2, 0.3], [0.1, 0.2, 0.3])
-    assert sl.geometry.ray_aabb([0.1, 0.2, 5], [0, 0, -1.0], *point, method).t == 4.7
-    assert np.isinf(sl.geometry.ray_aabb([0.1, 0.2, 5], [0, 1e-9, -1.0], *point, method).t)
+    assert sl.geometry.ray_aabb([0.1, 0.2, 5], [0, 0, -1.0], *point, method=method).t == 4.7
+    assert np.isinf(sl.geometry.ray_aabb([0.1, 0.2, 5], [0, 1e-9, -1.0], *point, method=method).t)
 
 
 @PRECISIONS
@@ -117,7 +117,7 @@ def test_length_of_direction_scales_t_alone(dtype, length, method):
     rng = np.random.default_rng(3)
     o, d, lower = rng.normal(size=(3, 500, 3)).astype(dtype)
     factor = dtype(2.0 ** np.round(np.log2(length)))
-    one, many = (sl.geometry.ray_aabb(o, x, lower, lower + 2, method) for x in (d, d * factor))
+    one, many = (sl.geometry.ray_aabb(o, x, lower, lower + 2, method=method) for x in (d, d * factor))
     assert all(np.array_equal(x / factor, y) for x, y in zip(one, many, strict=True))
 
 
@@ -163,9 +163,9 @@ def test_interior_interval_infinite_and_empty_boxes():
 def test_nan_stays_in_its_element(method):
     o, d = np.full((6, 3), 0.5) - [3, 0, 0], np.tile([1.0, 0.01, 0.01], (6, 1))
     lower, upper, t_min = np.zeros((6, 3)), np.ones((6, 3)), np.zeros(6)
-    clean = sl.geometry.ray_aabb(o, d, lower, upper, method)
+    clean = sl.geometry.ray_aabb(o, d, lower, upper, method=method)
     o[0, 1], d[1], lower[2, 2], o[3, 0], t_min[4] = np.nan, 0, np.nan, np.inf, np.nan
-    hit = sl.geometry.ray_aabb(o, d, lower, upper, method, t_min=t_min)
+    hit = sl.geometry.ray_aabb(o, d, lower, upper, method=method, t_min=t_min)
     assert all(np.isnan(x[:5]).all() and x[5] == y[5] for x, y in zip(hit, clean, strict=True))
 
 
@@ -175,4 +175,4 @@ def test_broadcasts_rays_over_boxes():
     all_pairs = sl.geometry.ray_aabb(o[:, None], d[:, None], lower, lower + 1)
     assert all_pairs.t.shape == (5, 5) and all_pairs.t.dtype == np.float32
     with pytest.raises(ValueError, match="method: expected one of"):
-        sl.geometry.ray_aabb(o, d, lower, lower, "fast")
+        sl.geometry.ray_aabb(o, d, lower, lower, method="fast")

@@ -96,7 +96,7 @@ def test_t_against_rationals_far_from_the_origin():
         polygon = np.c_[xy, 3_000_000 - xy.sum(1)].astype(dtype)
         o = (np.array([1e6, 1e6, 1e6]) + 100 * rng.normal(size=(200, 3))).astype(dtype)
         d = (polygon.mean(0) + 20 * rng.normal(size=(200, 3)) - o).astype(dtype)
-        hit = sl.geometry.ray_polygon(o, d, polygon, "winding")
+        hit = sl.geometry.ray_polygon(o, d, polygon, rule="winding")
         n = vector([1, 1, 1])
         for i in np.flatnonzero(np.isfinite(hit)):
             want = (3_000_000 - dot(n, vector(o[i]))) / dot(n, vector(d[i]))
@@ -112,7 +112,7 @@ def test_agrees_with_trimesh_on_a_fan():
     d = rng.uniform(-0.8, 0.8, (200, 2)) @ frame[:2] - o
     met = fan.ray.intersects_any(o, d)
     # The fan covers the polygon if it turns about the centre everywhere.
-    assert (np.isfinite(sl.geometry.ray_polygon(o, d, polygon, "winding")) == met).mean() > 0.99
+    assert (np.isfinite(sl.geometry.ray_polygon(o, d, polygon, rule="winding")) == met).mean() > 0.99
 
 
 def test_rays_in_the_plane_polygons_without_area_and_borders():

@@ -114,7 +114,7 @@ def test_small_integers_are_decided_as_the_exact_discriminant(o, d, r):
 def test_all_methods_find_near_spheres(dtype, method):
     rays = aimed(dtype, n=2000, reach=0.8, seed=3)
     want = sl.geometry.ray_sphere(*rays)
-    got = sl.geometry.ray_sphere(*rays, method)
+    got = sl.geometry.ray_sphere(*rays, method=method)
     # At three radii squared distances are nine times the radius's: some tens of roundings.
     assert np.allclose(got.t_near, want.t_near, rtol=60 * np.finfo(dtype).eps)
     assert np.allclose(got.t_far, want.t_far, rtol=60 * np.finfo(dtype).eps)
@@ -124,7 +124,7 @@ def test_only_the_robust_method_keeps_spheres_at_1e4_radii():
     rays = aimed(np.float32, distance=1e4, reach=0.9)
     assert np.isfinite(sl.geometry.ray_sphere(*rays).t).all()
     for method in ("quadratic", "geometric"):
-        assert np.isinf(sl.geometry.ray_sphere(*rays, method).t).any()
+        assert np.isinf(sl.geometry.ray_sphere(*rays, method=method).t).any()
 
 
 def test_agrees_with_a_fine_mesh_of_a_sphere():
@@ -140,7 +140,7 @@ def test_agrees_with_a_fine_mesh_of_a_sphere():
 @pytest.mark.parametrize("method", METHODS)
 def test_interior_tangent_behind_and_interval(method):
     def cast(o, d, **interval):
-        return [float(x) for x in sl.geometry.ray_sphere(o, d, [0, 0, 0], 1.0, method, **interval)]
+        return [float(x) for x in sl.geometry.ray_sphere(o, d, [0, 0, 0], 1.0, method=method, **interval)]
 
     assert cast([0, 0, 0], [0, 0, 2.0]) == [0.5, -0.5, 0.5]
     assert cast([0, 1, -2], [0, 0, 1.0]) == [2, 2, 2]
@@ -178,16 +178,16 @@ def test_broadcasts_rays_over_spheres():
 @pytest.mark.parametrize("method", METHODS)
 def test_nan_infinity_and_negative_radii_stay_in_their_element(method):
     o, d, c, r = aimed(np.float64, n=6)
-    clean = sl.geometry.ray_sphere(o, d, c, r, method)
+    clean = sl.geometry.ray_sphere(o, d, c, r, method=method)
     o[0, 1], d[1], c[2, 0], r[3], t_min = np.nan, 0, np.inf, -1, np.zeros(6)
     t_min[4] = np.nan
-    hit = sl.geometry.ray_sphere(o, d, c, r, method, t_min=t_min)
+    hit = sl.geometry.ray_sphere(o, d, c, r, method=method, t_min=t_min)
     assert all(np.isnan(x[:5]).all() and x[5] == y[5] for x, y in zip(hit, clean, strict=True))
 
 
 def test_bad_arguments_are_named():
     with pytest.raises(ValueError, match="method: expected one of"):
-        sl.geometry.ray_sphere([0, 0, 0], [1, 0, 0], [0, 0, 0], 1, "fast")
+        sl.geometry.ray_sphere([0, 0, 0], [1, 0, 0], [0, 0, 0], 1, method="fast")
     with pytest.raises(ValueError, match=r"centers: expected shape \(\.\.\., 3\)"):
         sl.geometry.ray_sphere([0, 0, 0], [1, 0, 0], [0, 0], 1)
     with pytest.raises(ValueError, match="t_max: expected a number, got nan"):

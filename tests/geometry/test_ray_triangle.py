@@ -23,7 +23,7 @@ def aimed(rng, n, dtype):
 @pytest.mark.parametrize("method", METHODS)
 def test_hit_is_one_point_on_ray_and_triangle(dtype, method):
     o, d, a, b, c = aimed(np.random.default_rng(1), 5000, dtype)
-    hit = sl.geometry.ray_triangle(o, d, a, b, c, method)
+    hit = sl.geometry.ray_triangle(o, d, a, b, c, method=method)
     assert hit.t.dtype == dtype
     met = np.isfinite(hit.t)
     t, u, v = (x[met, None].astype(np.float64) for x in hit)
@@ -50,7 +50,7 @@ def det3(m):
 def test_methods_agree_with_exact_arithmetic_away_from_edges(method):
     rng = np.random.default_rng(2)
     rays = aimed(rng, 300, np.float64)
-    hit = sl.geometry.ray_triangle(*rays, method)
+    hit = sl.geometry.ray_triangle(*rays, method=method)
     for i in range(300):
         o, d, a, b, c = ([Fraction(x) for x in v[i]] for v in rays)
         m = [[b[k] - a[k], c[k] - a[k], -d[k]] for k in range(3)]
@@ -72,7 +72,7 @@ def test_length_of_direction_scales_t_alone(dtype, length, method):
     o, d, a, b, c = aimed(np.random.default_rng(3), 1000, dtype)
     # A power of two, so that the scaled direction is the same to the bit.
     factor = dtype(2.0 ** np.round(np.log2(length)))
-    one, many = (sl.geometry.ray_triangle(o, x, a, b, c, method) for x in (d, d * factor))
+    one, many = (sl.geometry.ray_triangle(o, x, a, b, c, method=method) for x in (d, d * factor))
     assert np.array_equal(one.u, many.u) and np.array_equal(one.t / factor, many.t)
 
 
@@ -99,19 +99,19 @@ def test_no_ray_passes_a_fan_at_its_edges_and_hub(dtype, shift, radii, target, a
 @pytest.mark.parametrize("method", METHODS)
 def test_degenerate_triangles_and_rays_in_the_plane_miss(method):
     o, d = np.array([0.2, 0.2, 1.0]), np.array([0, 0, -1.0])
-    line = sl.geometry.ray_triangle(o, d, [0, 0, 0], [1, 1, 0], [2, 2, 0], method)
-    point = sl.geometry.ray_triangle(o, d, [[0.2, 0.2, 0]], [0.2, 0.2, 0], [0.2, 0.2, 0], method)
-    within = sl.geometry.ray_triangle([-1, 0.2, 0], [1.0, 0, 0], [0, 0, 0], [1, 0, 0], [0, 1, 0], method)
+    line = sl.geometry.ray_triangle(o, d, [0, 0, 0], [1, 1, 0], [2, 2, 0], method=method)
+    point = sl.geometry.ray_triangle(o, d, [[0.2, 0.2, 0]], [0.2, 0.2, 0], [0.2, 0.2, 0], method=method)
+    within = sl.geometry.ray_triangle([-1, 0.2, 0], [1.0, 0, 0], [0, 0, 0], [1, 0, 0], [0, 1, 0], method=method)
     assert all(np.isinf(h.t).all() and (h.u == 0).all() for h in (line, point, within))
 
 
 @pytest.mark.parametrize("method", METHODS)
 def test_nan_and_infinity_stay_in_their_element(method):
     o, d, a, b, c = aimed(np.random.default_rng(4), 6, np.float64)
-    clean = sl.geometry.ray_triangle(o, d, a, b, c, method)
+    clean = sl.geometry.ray_triangle(o, d, a, b, c, method=method)
     o[0, 1], d[1], a[2, 2], c[3, 0], t_max = np.nan, 0, np.inf, np.nan, np.full(6, np.inf)
     t_max[4] = np.nan
-    hit = sl.geometry.ray_triangle(o, d, a, b, c, method, t_max=t_max)
+    hit = sl.geometry.ray_triangle(o, d, a, b, c, method=method, t_max=t_max)
     assert np.isnan(hit.t[:5]).all() and np.array_equal(hit.t[5], clean.t[5])
 
 

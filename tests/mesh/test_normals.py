@@ -31,7 +31,7 @@ def test_vertex_normals_are_trimeshs(weights, dtype):
     for k in range(3):
         np.add.at(expected, f[:, k], share[weights][:, k : k + 1] * m.face_normals)
     expected /= np.linalg.norm(expected, axis=-1, keepdims=True)
-    assert np.abs(vertex_normals(p, f, weights) - expected).max() < 16 * np.finfo(dtype).eps
+    assert np.abs(vertex_normals(p, f, weights=weights) - expected).max() < 16 * np.finfo(dtype).eps
 
 
 def test_angle_weights_do_not_depend_on_how_a_side_is_cut():
@@ -42,15 +42,15 @@ def test_angle_weights_do_not_depend_on_how_a_side_is_cut():
     other = np.concatenate([[[a, b, d], [b, c, d]], faces[2:]])  # one side along its other diagonal
     for cut in (faces, other):
         assert np.abs(vertex_normals(welded, cut) - np.sign(welded) / np.sqrt(3)).max() < 1e-15
-    assert np.abs(vertex_normals(welded, other, "uniform") - np.sign(welded) / np.sqrt(3)).max() > 0.1
+    assert np.abs(vertex_normals(welded, other, weights="uniform") - np.sign(welded) / np.sqrt(3)).max() > 0.1
 
 
 @pytest.mark.parametrize("scale", [1e-30, 1e30])
 @pytest.mark.parametrize("weights", ["angle", "area", "uniform"])
 def test_scale_changes_nothing_in_single_precision(weights, scale):
     ball = icosphere(2, dtype=np.float32)
-    got = vertex_normals(ball.positions * np.float32(scale), ball.faces, weights)
-    assert np.abs(got - vertex_normals(ball.positions, ball.faces, weights)).max() < 1e-6
+    got = vertex_normals(ball.positions * np.float32(scale), ball.faces, weights=weights)
+    assert np.abs(got - vertex_normals(ball.positions, ball.faces, weights=weights)).max() < 1e-6
 
 
 def test_what_has_no_normal_is_nan_and_touches_no_other():
@@ -80,5 +80,5 @@ def test_bad_faces_are_named():
     with pytest.raises(ValueError, match=r"faces: index 3 at \(0, 2\) is out of range"):
         face_normals(np.zeros((3, 3)), [[0, 1, 3]])
     with pytest.raises(ValueError, match="weights: expected one of"):
-        vertex_normals(np.zeros((3, 3)), [[0, 1, 2]], "none")
+        vertex_normals(np.zeros((3, 3)), [[0, 1, 2]], weights="none")
     assert face_normals(np.zeros((0, 3)), np.zeros((0, 3), int)).shape == (0, 3)

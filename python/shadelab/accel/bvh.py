@@ -71,7 +71,7 @@ class BVH(PointQueries, Movable, Structure):
     _kernel = staticmethod(_kernels.build)
 
     def __init__(
-        self, positions: ArrayLike, faces: ArrayLike, method: Method = "sah", *, progress: Progress = None
+        self, positions: ArrayLike, faces: ArrayLike, *, method: Method = "sah", progress: Progress = None
     ) -> None:
         _arrays.choice("method", method, ("sah", "median", "lbvh"))
         self._build(positions, faces, progress, method)

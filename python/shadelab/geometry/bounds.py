@@ -108,7 +108,7 @@ def bounding_aabb(points: ArrayLike) -> BoundingBox:
     return BoundingBox(*_bound(_kernels.bounding_aabb, array, [((3,), array.dtype)] * 2))
 
 
-def bounding_sphere(points: ArrayLike, method: Literal["minimal", "ritter"] = "minimal") -> BoundingSphere:
+def bounding_sphere(points: ArrayLike, *, method: Literal["minimal", "ritter"] = "minimal") -> BoundingSphere:
     """Balls around sets of points.
 
     Parameters
@@ -154,7 +154,7 @@ def bounding_sphere(points: ArrayLike, method: Literal["minimal", "ritter"] = "m
     return BoundingSphere(*_bound(_kernels.bounding_sphere, array, outputs, method))
 
 
-def bounding_obb(points: ArrayLike, method: Literal["calipers", "dito", "pca"] = "calipers") -> BoundingOBB:
+def bounding_obb(points: ArrayLike, *, method: Literal["calipers", "dito", "pca"] = "calipers") -> BoundingOBB:
     """Oriented boxes around sets of points.
 
     Parameters

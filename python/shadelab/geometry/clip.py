@@ -72,8 +72,8 @@ def clip_segment(
     end: ArrayLike,
     lower: ArrayLike,
     upper: ArrayLike,
-    method: Literal["liang_barsky", "cohen_sutherland"] = ...,
     *,
+    method: Literal["liang_barsky", "cohen_sutherland"] = ...,
     full_output: Literal[False] = False,
 ) -> ClippedSegment: ...
 @overload
@@ -82,8 +82,8 @@ def clip_segment(
     end: ArrayLike,
     lower: ArrayLike,
     upper: ArrayLike,
-    method: Literal["liang_barsky", "cohen_sutherland"] = ...,
     *,
+    method: Literal["liang_barsky", "cohen_sutherland"] = ...,
     full_output: Literal[True],
 ) -> SegmentClipping: ...
 def clip_segment(
@@ -91,8 +91,8 @@ def clip_segment(
     end: ArrayLike,
     lower: ArrayLike,
     upper: ArrayLike,
-    method: Literal["liang_barsky", "cohen_sutherland"] = "liang_barsky",
     *,
+    method: Literal["liang_barsky", "cohen_sutherland"] = "liang_barsky",
     full_output: bool = False,
 ) -> ClippedSegment | SegmentClipping:
     """Clip segments to axis-aligned rectangles or boxes.

@@ -46,7 +46,7 @@ def _sides(kernel: Any, given: dict[str, tuple[ArrayLike, int]], full_output: bo
     return result if _arrays.flag("full_output", full_output) else result.side
 
 
-def frustum_planes(matrix: ArrayLike, depth: Literal["standard", "zero_to_one", "reversed"] = "standard") -> Floats:
+def frustum_planes(matrix: ArrayLike, *, depth: Literal["standard", "zero_to_one", "reversed"] = "standard") -> Floats:
     """The six planes of what a projection shows.
 
     Parameters

@@ -15,7 +15,7 @@ __all__ = ["octahedral_decode", "octahedral_encode"]
 
 
 def octahedral_encode(
-    directions: ArrayLike, bits: int | None = None, rounding: Literal["precise", "nearest"] = "precise"
+    directions: ArrayLike, bits: int | None = None, *, rounding: Literal["precise", "nearest"] = "precise"
 ) -> NDArray[Any]:
     """Encode directions as points of the square [-1, 1]², by unfolding the octahedron around the sphere.
 

@@ -68,17 +68,17 @@ def _with_polygons(core: dict[str, tuple[Floats, int]], polygon: Floats) -> tupl
 
 @overload
 def point_in_polygon(
-    points: ArrayLike, polygon: ArrayLike, rule: Rule = ..., *, border: bool = ..., full_output: Literal[False] = ...
+    points: ArrayLike, polygon: ArrayLike, *, rule: Rule = ..., border: bool = ..., full_output: Literal[False] = ...
 ) -> NDArray[np.bool_]: ...
 @overload
 def point_in_polygon(
-    points: ArrayLike, polygon: ArrayLike, rule: Rule = ..., *, border: bool = ..., full_output: Literal[True]
+    points: ArrayLike, polygon: ArrayLike, *, rule: Rule = ..., border: bool = ..., full_output: Literal[True]
 ) -> PolygonPlace: ...
 def point_in_polygon(
     points: ArrayLike,
     polygon: ArrayLike,
-    rule: Rule = "even_odd",
     *,
+    rule: Rule = "even_odd",
     border: bool = True,
     full_output: bool = False,
 ) -> NDArray[np.bool_] | PolygonPlace:
@@ -146,8 +146,8 @@ def ray_polygon(
     origins: ArrayLike,
     directions: ArrayLike,
     polygon: ArrayLike,
-    rule: Rule = ...,
     *,
+    rule: Rule = ...,
     t_min: ArrayLike = ...,
     t_max: ArrayLike = ...,
     full_output: Literal[False] = ...,
@@ -157,8 +157,8 @@ def ray_polygon(
     origins: ArrayLike,
     directions: ArrayLike,
     polygon: ArrayLike,
-    rule: Rule = ...,
     *,
+    rule: Rule = ...,
     t_min: ArrayLike = ...,
     t_max: ArrayLike = ...,
     full_output: Literal[True],
@@ -167,8 +167,8 @@ def ray_polygon(
     origins: ArrayLike,
     directions: ArrayLike,
     polygon: ArrayLike,
-    rule: Rule = "even_odd",
     *,
+    rule: Rule = "even_odd",
     t_min: ArrayLike = 0.0,
     t_max: ArrayLike = np.inf,
     full_output: bool = False,

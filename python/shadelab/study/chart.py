@@ -124,6 +124,11 @@ def figure(study: Study) -> Figure:
     return made
 
 
+def _svg(width: int, height: int, label: str) -> str:
+    size = f'viewBox="0 0 {width} {height}" width="{width}"'
+    return f'<svg class="chart" {size} role="img" aria-label="{label}">'
+
+
 class _Axis:
     """A logarithmic axis between two pixels."""
 
@@ -154,7 +159,7 @@ def svg(study: Study, width: int, height: int, choice: Choice | None = None) -> 
     left, right, top, bottom = 70, 12, 12, 44
     x = _Axis([v for p in points for v in (p.cost.low, p.cost.high)], left, width - right)
     y = _Axis([v for p in points for v in (p.low, p.high)], height - bottom, top)
-    out = [f'<svg class="chart" viewBox="0 0 {width} {height}" width="{width}" role="img" aria-label="{study.word} and time">']
+    out = [_svg(width, height, f"{study.word} and time")]
     for v in x.ticks():
         out.append(f'<line class="grid" x1="{x(v):.1f}" x2="{x(v):.1f}" y1="{top}" y2="{height - bottom}"/>')
         out.append(f'<text x="{x(v):.1f}" y="{height - bottom + 16}" text-anchor="middle">{v:g}</text>')
@@ -164,7 +169,9 @@ def svg(study: Study, width: int, height: int, choice: Choice | None = None) -> 
     x_label, _ = _labels(study)
     out.append(f'<text x="{(left + width - right) / 2}" y="{height - 8}" text-anchor="middle">{x_label}</text>')
     middle = (top + height - bottom) / 2
-    out.append(f'<text x="14" y="{middle}" text-anchor="middle" transform="rotate(-90 14 {middle})">{study.word}</text>')
+    out.append(
+        f'<text x="14" y="{middle}" text-anchor="middle" transform="rotate(-90 14 {middle})">{study.word}</text>'
+    )
     line = " ".join(f"{x(a):.1f},{y(b):.1f}" for a, b in _stairs(points))
     out.append(f'<polyline class="front" points="{line}"/>')
     for p in sorted(points, key=lambda p: p.on_front):
@@ -225,7 +232,7 @@ def cases_svg(study: Study, settings: Sequence[tuple[str, dict[str, Any]]], widt
     step = step if wide else 40
     height = top + step * len(study.cases) + 34
     x = _Axis([floor, *seen], left, width - 12)
-    out = [f'<svg class="chart" viewBox="0 0 {width} {height}" width="{width}" role="img" aria-label="{study.word} by case">']
+    out = [_svg(width, height, f"{study.word} by case")]
     for v in x.ticks():
         out.append(f'<line class="grid" x1="{x(v):.1f}" x2="{x(v):.1f}" y1="{top}" y2="{height - 34}"/>')
         out.append(f'<text x="{x(v):.1f}" y="{height - 16}" text-anchor="middle">{v:g}</text>')

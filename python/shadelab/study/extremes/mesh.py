@@ -92,7 +92,7 @@ def _(dtype: _ANY) -> Measurement:
             exact /= np.sqrt((exact**2).sum())
             # A thin slice's own normal errs by eps over its angle, in which its weight is proportional but for uniform.
             slack = 1.0 if kind != "uniform" else max(1.0, float((1 / angle[solid]).mean()))
-            worst.append(float(np.abs(mesh.vertex_normals(p, faces, kind)[0] - exact).max()) / slack)
+            worst.append(float(np.abs(mesh.vertex_normals(p, faces, weights=kind)[0] - exact).max()) / slack)
     return _units(worst, dtype, 9)
 
 
@@ -101,7 +101,7 @@ def _(dtype: _ANY) -> Measurement:
     p = np.array([[0, 0, 0], [1, 0, 0], [0, 1, 0], [0, -1, 0], [0, 0, 1], [9, 9, 9]], dtype)
     # Three faces at one edge, one of them twice; vertex 5 alone; one face of no area.
     faces = np.array([[0, 1, 2], [0, 3, 1], [0, 1, 4], [0, 1, 4], [0, 0, 1]])
-    got = mesh.vertex_normals(p, faces, "uniform")
+    got = mesh.vertex_normals(p, faces, weights="uniform")
     expected = np.array([[0, -1, 1], [0, -1, 1], [0, 0, 1], [0, 0, 1], [0, -1, 0], [np.nan] * 3])
     expected /= np.linalg.norm(expected, axis=-1, keepdims=True)
     close = np.isclose(got, expected, rtol=0, atol=4 * np.finfo(dtype).eps, equal_nan=True)

@@ -140,7 +140,7 @@ def _sum_of_products(a: list[Array], b: list[Array]) -> Array:
 def _run(method: Any) -> Callable[..., Array]:
     def run(inputs: Rays, prepared: Any, precision: str) -> Array:
         origins, directions, centers, radii = prepared
-        return geometry.ray_sphere(origins, directions, centers, radii, method).t
+        return geometry.ray_sphere(origins, directions, centers, radii, method=method).t
 
     return run
 

@@ -138,7 +138,7 @@ def _side(d: Array, a: Array, b: Array, o: Array, corners: tuple[Array, Array]) 
 def _run(method: Any) -> Callable[..., Array]:
     def run(inputs: Rays, prepared: Any, precision: str) -> Array:
         origins, directions, a, b, c = prepared
-        return geometry.ray_triangle(origins, directions, a, b, c, method).t
+        return geometry.ray_triangle(origins, directions, a, b, c, method=method).t
 
     return run
 

@@ -94,7 +94,7 @@ def _axes(dtype: np.dtype[Any]) -> Measurement:
 @extreme(AABB, "conservative loses none", domain="lines through corners", unit="count", claim=0)
 def _conservative(dtype: np.dtype[Any]) -> Measurement:
     o, d, lower, upper = rays = _corners(dtype, 7)
-    kept = np.isfinite(geometry.ray_aabb(o, d, lower, upper, "conservative").t_enter)
+    kept = np.isfinite(geometry.ray_aabb(o, d, lower, upper, method="conservative").t_enter)
     lost = sum(_stay(*(x[i] for x in rays)) is not None and not kept[i] for i in range(len(kept)))
     return Measurement(float(lost), len(kept))
 

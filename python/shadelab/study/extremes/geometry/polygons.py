@@ -31,7 +31,7 @@ def _place(p: Array, polygon: Array) -> tuple[bool, int]:
 
 def _places(points: Array, polygon: Array) -> Measurement:
     """Wrong places."""
-    got = geometry.point_in_polygon(points, polygon, "winding", border=False, full_output=True)
+    got = geometry.point_in_polygon(points, polygon, rule="winding", border=False, full_output=True)
     wrong = 0
     for i, p in enumerate(points):
         border, winding = _place(p, polygon)
