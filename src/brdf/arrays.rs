@@ -5,6 +5,7 @@ use super::bsdf::{Bsdf, Terms};
 use super::lambert::Diffuse;
 use super::metallic_roughness::Lobes;
 use super::model::{Draw, Model, Row, WIDTH};
+use super::one_metal::OneMetal;
 use super::rough_conductor::RoughConductor;
 use super::specular_glossiness::SpecularGlossiness;
 use crate::parallel::{self, Interrupted, Watch};
@@ -72,8 +73,16 @@ pub fn eval_many<T: Real>(
     wo: &[[T; 3]],
     out: &mut [[T; 3]],
 ) -> Result<(), Interrupted> {
+    let metal = match rows.only() {
+        Some(Bsdf::RoughConductor(metal)) => OneMetal::of(&metal),
+        _ => None,
+    };
     parallel::for_each(watch, (wi, wo, out), PIECE, |first, (wi, wo, out)| {
         dispatch!(s => {
+            if let Some(metal) = metal {
+                metal.eval(s, wi, wo, out);
+                return;
+            }
             if rows.ids.is_none() && lanes::<T, _, Value, 3>(s, &rows, first, (wi, wo), out) {
                 return;
             }

@@ -105,6 +105,17 @@ impl<V: Lanes> Microfacets<V> {
         }
     }
 
+    /// 4 |cos θi cos θo| / G of GGX by Smith's height-correlated or, for every other name, separable function.
+    #[inline(always)]
+    pub fn four_smith(&self, wi: Vec3<V>, wo: Vec3<V>) -> V {
+        let (ci, co) = (wi.z.abs(), wo.z.abs());
+        let (si, so) = (self.stretched(wi), self.stretched(wo));
+        match self.masking {
+            Masking::HeightCorrelated => (ci * so + co * si) * ci.num(2.0),
+            _ => (ci + si) * (co + so),
+        }
+    }
+
     /// Smith's masking of one direction.
     #[inline(always)]
     pub fn masking_of(&self, w: Vec3<V>) -> V {

@@ -30,6 +30,7 @@ pub mod metallic_roughness;
 mod microfacets;
 mod model;
 pub mod ndf;
+mod one_metal;
 pub mod oren_nayar;
 pub mod phong;
 pub mod plastic;

@@ -15,7 +15,7 @@
 use crate::dispatch;
 use crate::math;
 use crate::parallel::{self, Interrupted, Watch};
-use crate::real::Real;
+use crate::real::{Lanes, Real};
 use crate::transform::orthonormal_basis::Frame;
 use crate::vec::Vec3;
 
@@ -27,7 +27,9 @@ pub type Moments = [f64; ORDERS];
 struct Walk {
     /// Σ e_z ∫ cᵏ ds for k = 0 … 5.
     arcs: [f64; ORDERS - 1],
-    solid_angle: f64,
+    /// A complex number whose angle is half the solid angle: the product of those of the arcs, of which each is that of
+    /// the triangle of the arc and the pole.
+    turn: [f64; 2],
     /// The first corner of the clipped polygon and the last one so far, unit.
     ends: Option<(Vec3<f64>, Vec3<f64>)>,
 }
@@ -53,8 +55,14 @@ impl Walk {
         let angle = math::atan2(sine, a.dot(b));
         let e = normal * (1.0 / sine);
         // The triangle of the arc and the pole, no corner of which is farther than a right angle from it (van Oosterom
-        // and Strackee 1983).
-        self.solid_angle += 2.0 * math::atan2(normal.z, 1.0 + a.z + b.z + a.dot(b));
+        // and Strackee 1983). Half of all is at most a half turn, so one angle of the product serves.
+        let ([p, q], x, y) = (self.turn, 1.0 + a.z + b.z + a.dot(b), normal.z);
+        self.turn = [p * x - q * y, p * y + q * x];
+        let size = Lanes::max(self.turn[0].abs(), self.turn[1].abs());
+        let (small, large) = (size < 1e-100, size > 1e100);
+        if small || large {
+            self.turn = [self.turn[0] / size, self.turn[1] / size];
+        }
         // c and its derivative along the arc, at both ends.
         let (c0, c1) = (a.z, b.z);
         let (d0, d1) = (e.x * a.y - e.y * a.x, e.x * b.y - e.y * b.x);
@@ -112,7 +120,7 @@ pub fn irradiance(corners: &[Vec3<f64>]) -> f64 {
 /// Moments of orders 0 … 6 of a polygon whose corners are given from the point, the normal being z. Positive for a
 /// polygon that is counter-clockwise as seen from the point.
 pub fn moments(corners: &[Vec3<f64>]) -> Moments {
-    let mut walk = Walk { arcs: [0.0; ORDERS - 1], solid_angle: 0.0, ends: None };
+    let mut walk = Walk { arcs: [0.0; ORDERS - 1], turn: [1.0, 0.0], ends: None };
     let mut before = corners[corners.len() - 1];
     for &corner in corners {
         if (before.z > 0.0) != (corner.z > 0.0) {
@@ -131,7 +139,12 @@ pub fn moments(corners: &[Vec3<f64>]) -> Moments {
         walk.to(first);
     }
     // Seen from the point, counter-clockwise is clockwise about the normal.
-    let mut moment = [-walk.solid_angle, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0];
+    let mut solid_angle = 2.0 * math::atan2(walk.turn[1], walk.turn[0]);
+    if solid_angle.abs() > 6.0 {
+        // All of the hemisphere: rounding could have turned further.
+        solid_angle = solid_angle.copysign(walk.arcs[0]);
+    }
+    let mut moment = [-solid_angle, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0];
     for n in 1..ORDERS {
         let lower = if n >= 2 { (n - 1) as f64 * moment[n - 2] } else { 0.0 };
         moment[n] = (lower - walk.arcs[n - 1]) / (n + 1) as f64;
@@ -165,5 +178,10 @@ pub fn polygon_moments_many<T: Real>(
 
 #[inline(always)]
 pub fn double<T: Real>(v: [T; 3]) -> Vec3<f64> {
-    Vec3::from(v.map(T::to_f64))
+    Vec3::new(v[0].to_f64(), v[1].to_f64(), v[2].to_f64())
+}
+
+#[inline(always)]
+pub fn doubled<T: Real>(v: Vec3<T>) -> Vec3<f64> {
+    double([v.x, v.y, v.z])
 }

@@ -10,6 +10,7 @@
 use super::Light;
 use super::irradiance::moments;
 use super::ltc;
+use super::polygon::doubled;
 use super::representative::representative;
 use crate::brdf::ggx;
 use crate::brdf::metallic_roughness::{Lobes, Materials};
@@ -109,7 +110,10 @@ impl<T: Real> Receiver<T> {
             };
             self.diffuse(light) + mirrored
         } else {
-            self.beam(light).map_or(Vec3::splat(T::zero()), |(radiance, ..)| radiance)
+            match self.beam(light) {
+                Some((radiance, ..)) => radiance,
+                None => Vec3::splat(T::zero()),
+            }
         }
     }
 
@@ -125,8 +129,9 @@ impl<T: Real> Receiver<T> {
     /// The diffuse part: base/π (1 − F(wo)) ∫ (1 − F(c)) c dω, with (1 − c)⁵ c written in powers of c.
     #[inline(always)]
     fn diffuse(&self, light: &Light<T>) -> Vec3<T> {
-        if self.wo.z <= T::zero() {
-            return Vec3::splat(T::zero());
+        // Metals have none; NaN goes on.
+        if self.wo.z <= T::zero() || self.lobes.diffuse == Vec3::splat(T::zero()) {
+            return (self.point + self.frame.z + self.wo) * T::zero();
         }
         let m = moments(light, self.point, self.frame.z);
         let grazing = m[1] - 5.0 * m[2] + 10.0 * m[3] - 10.0 * m[4] + 5.0 * m[5] - m[6];
@@ -151,8 +156,7 @@ impl<T: Real> Receiver<T> {
     /// The mirrors' part of a light with an outline, by transformed cosines.
     #[inline(always)]
     fn transformed(&self, light: &Light<T>, desk: &mut Desk) -> Vec3<T> {
-        let double = |v: Vec3<T>| v.map(T::to_f64);
-        let point = double(self.point);
+        let point = doubled(self.point);
         if !self.lobes.is_specular()
             || self.wo.z <= T::zero()
             || !ltc::outline(light, point, &mut desk.corners)
@@ -160,8 +164,8 @@ impl<T: Real> Receiver<T> {
             // NaN goes on.
             return (self.point + self.wo) * T::zero();
         }
-        let frame = Frame { x: double(self.frame.x), y: double(self.frame.y), z: double(self.frame.z) };
-        let (wo, alpha) = (double(self.wo), self.lobes.alpha.to_f64());
+        let frame = Frame { x: doubled(self.frame.x), y: doubled(self.frame.y), z: doubled(self.frame.z) };
+        let (wo, alpha) = (doubled(self.wo), self.lobes.alpha.to_f64());
         let corners = desk.corners.iter().copied();
         let [base, edge] = ltc::mirrored(ltc::shipped(), corners, &frame, wo, alpha, &mut desk.scratch)
             .map(|x| T::of(Lanes::max(x, 0.0)));
@@ -187,6 +191,12 @@ impl<T: Real> Receiver<T> {
         self.lobes.specular(wi, self.wo).times(light.radiance()) * factor
     }
 
+    /// The density of the lobe's draws, where there are any.
+    #[inline(always)]
+    fn lobe_pdf(&self, wi: Vec3<T>, drawn: bool) -> T {
+        if drawn { ggx::ggx_pdf(wi, self.wo, self.lobes.alpha) } else { T::zero() }
+    }
+
     /// The mirrors' part, by sampling the light and the lobe.
     #[inline(always)]
     fn mirrored(&self, light: &Light<T>, stream: u64, seed: u64, digits: &[[u32; 3]]) -> Vec3<T> {
@@ -194,15 +204,19 @@ impl<T: Real> Receiver<T> {
         if !self.lobes.is_specular() || self.wo.z <= T::zero() || digits.is_empty() {
             return none;
         }
-        let scramble: [Scramble; 4] = std::array::from_fn(|d| Scramble::new(seed, stream, d as u32));
+        let scramble = [
+            Scramble::new(seed, stream, 0),
+            Scramble::new(seed, stream, 1),
+            Scramble::new(seed, stream, 2),
+            Scramble::new(seed, stream, 3),
+        ];
         let (mut sum, both) = (none, self.lobe_matters(light));
-        let lobe = |wi| if both { ggx::ggx_pdf(wi, self.wo, self.lobes.alpha) } else { T::zero() };
         for x in digits {
             let sighting = light.sight(self.point, [scramble[0].fraction(x[0]), scramble[1].fraction(x[1])]);
             if let Some(s) = sighting {
                 let wi = self.frame.local(s.wi);
                 if wi.z > T::zero() {
-                    sum = sum + self.lobes.specular(wi, self.wo) * (wi.z / (s.pdf + lobe(wi)));
+                    sum = sum + self.lobes.specular(wi, self.wo) * (wi.z / (s.pdf + self.lobe_pdf(wi, both)));
                 }
             }
             if !both {
@@ -213,7 +227,7 @@ impl<T: Real> Receiver<T> {
             if wi.z > T::zero()
                 && let Some(s) = light.meet(self.point, self.frame.world(wi))
             {
-                sum = sum + self.lobes.specular(wi, self.wo) * (wi.z / (s.pdf + lobe(wi)));
+                sum = sum + self.lobes.specular(wi, self.wo) * (wi.z / (s.pdf + self.lobe_pdf(wi, both)));
             }
         }
         sum.times(light.radiance()) * (T::one() / T::of(digits.len() as f64))
@@ -235,14 +249,15 @@ pub fn unshadowed_many<T: Real>(
         let mut desk = Desk { corners: Vec::new(), scratch: Vec::new(), few: digits(0, 16) };
         dispatch!(_s => {
             for (i, out) in (first..).zip(out.iter_mut()) {
-                *out = receivers.at(i).map_or([T::zero(); 3], |r| {
-                    let mut sum = Vec3::splat(T::zero());
+                // By hand: a closure would be called outside the dispatch.
+                let mut sum = Vec3::splat(T::zero());
+                if let Some(r) = receivers.at(i) {
                     for (k, light) in lights.iter().enumerate() {
                         let stream = (k as u64) << 40 | i as u64;
                         sum = sum + r.unshadowed(light, stream, mirrors, &mut desk);
                     }
-                    sum.to_array()
-                });
+                }
+                *out = sum.to_array();
             }
         })
     })

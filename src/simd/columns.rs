@@ -10,7 +10,7 @@ use crate::real::Real;
 /// The lanes of a vector.
 pub const LANES: usize = 8;
 /// Vectors of a block.
-const GROUPS: usize = 8;
+pub const GROUPS: usize = 8;
 /// Items of a block.
 pub const BLOCK: usize = LANES * GROUPS;
 
@@ -93,6 +93,16 @@ impl<V, T: Real, const N: usize> Sink<'_, V, T, N> {
         for c in 0..N {
             self.columns[c][group] = self.given[c].to_array();
         }
+    }
+
+    /// Keeps one component of a group of the block.
+    #[inline(always)]
+    pub fn put<S: Simd>(&mut self, _: S, component: usize, group: usize, x: V)
+    where
+        T: Real<V8<S> = V>,
+        V: SimdBase<S, Element = T, Array = [T; LANES]>,
+    {
+        self.columns[component][group] = x.to_array();
     }
 
     /// Writes the block from `at` on.

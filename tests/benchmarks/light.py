@@ -48,9 +48,21 @@ def main():
         for _ in range(3):
             for name, how in rows:
                 times[name].append(seconds(lambda how=how, n=repeat[name]: shade(n, **how)) / repeat[name])
-        for name, how in rows:
-            error = np.sqrt(((shade(**how) - exact) ** 2).mean()) / peak
-            print(f"  {name:22} {min(times[name]) / len(points) * 1e9:9.0f} ns a point   error {error:.5f}")
+        errors = {name: np.sqrt(((shade(**how) - exact) ** 2).mean()) / peak for name, how in rows}
+        costs = {name: min(times[name]) / len(points) * 1e9 for name, _ in rows}
+        for name, _ in rows:
+            print(f"  {name:22} {costs[name]:9.0f} ns a point   error {errors[name]:.5f}")
+        sampled = [name for name, how in rows if "samples" in how]
+        # Between two numbers of samples both error and cost are straight lines of their logarithms.
+        falling = np.log([errors[name] for name in sampled])[::-1]
+        cost = np.log([costs[name] for name in sampled])[::-1]
+        equal = np.exp(np.interp(np.log(errors["ltc"]), falling, cost))
+        where = (
+            ""
+            if falling[0] <= np.log(errors["ltc"]) <= falling[-1]
+            else " (at least: its error is beyond those sampled)"
+        )
+        print(f"  samples of equal error cost {equal / costs['ltc']:.1f} times what ltc does{where}")
 
 
 if __name__ == "__main__":

@@ -67,13 +67,36 @@ def test_empty_arrays_are_fine():
     assert brdf.Diffuse(np.empty((0, 3))).eval([0, 0, 1], [0, 0, 1]).shape == (0, 3)
 
 
-def test_lanes_give_the_bits_of_the_scalar():
+@pytest.mark.parametrize(
+    ("model", "name", "options"),
+    [
+        (brdf.RoughConductor, "alpha", {"distribution": "beckmann"}),
+        (brdf.MetallicRoughness, "roughness", {"metallic": 0.3}),
+        (brdf.SpecularGlossiness, "glossiness", {}),
+    ],
+)
+def test_lanes_give_the_bits_of_the_scalar(model, name, options):
+    """Parameters for all and one each go in lanes; rows that elements share by number go one by one."""
     wi, wo = common.directions(1001, 1, np.float32), common.directions(1001, 2, np.float32)
-    for distribution in ("ggx", "beckmann"):
-        model = brdf.RoughConductor(0.3, distribution=distribution)
-        many = model.eval(wi, wo)
-        each = brdf.RoughConductor(np.full(1001, 0.3, np.float32), distribution=distribution).eval(wi, wo)
-        assert np.array_equal(many, each)
+    wi[7], wo[9] = wi[7] * [1, 1, -1], np.nan
+    one = model(**{name: np.full(1, 0.3, np.float32)}, **options)
+    each = model(**{name: np.full(1001, 0.3, np.float32)}, **options)
+    shared = model(**{name: np.array([0.3, 0.7], np.float32)}, **options)
+    for call in ("eval", "pdf"):
+        many = getattr(one, call)(wi, wo)
+        np.testing.assert_array_equal(getattr(each, call)(wi, wo), many)
+        np.testing.assert_array_equal(getattr(shared, call)(wi[:, None], wo[:, None])[:, 0], many)
+
+
+@pytest.mark.parametrize("masking", ["separable", "height_correlated"])
+@pytest.mark.parametrize("alpha", [1e-4, 0.01, 0.3, 1.0])
+def test_one_metal_for_many_directions_is_the_model(alpha, masking):
+    """In single precision it has its own arithmetic: 8e-7 seen, of several roots and quotients."""
+    wi, wo = common.directions(5001, 1, np.float32), common.directions(5001, 2, np.float32)
+    for metal in ({}, {"eta": (1.3, 2.9, 3.1), "k": (7.5, 3.1, 3.3)}, {"eta": 0.9, "k": 0.01}):
+        model = brdf.RoughConductor(alpha, masking=masking, tint=(0.5, 1.0, 0.9), **metal)
+        exact = model.eval(wi.astype(float), wo.astype(float))
+        np.testing.assert_allclose(model.eval(wi, wo), exact, rtol=1.5e-6 if metal.get("k") != 0.01 else 1e-4)
 
 
 @pytest.mark.parametrize("model", [m for m in MODELS if m._facets], ids=lambda m: type(m).__name__)

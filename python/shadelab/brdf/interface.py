@@ -84,7 +84,8 @@ def lambert(wi: ArrayLike, wo: ArrayLike, albedo: ArrayLike) -> Floats:
 
     Notes
     -----
-    Within 1 ulp. About 5 ns a float32 element on one thread (AVX2). Draw with `shadelab.sampling.square_to_cosine_hemisphere`.
+    Within 1 ulp. About 5 ns a float32 element on one thread (AVX2). Draw with
+    `shadelab.sampling.square_to_cosine_hemisphere`.
 
     References
     ----------

@@ -517,6 +517,10 @@ class Principled(Model):
     Not strictly conservative: at grazing angles the form of 2012 gives back more than came. In that of 2015 with
     `spec_trans` above 0, directions stand on both sides.
 
+    The form of 2015 is Mitsuba's `principled` within 1e-5 but for three things: its coat is multiplied by
+    4 cos θi cos θo, hues are taken by another luminance (the source's 0.3, 0.6, 0.1 here), and draws choose among lobes
+    by other chances.
+
     References
     ----------
     B. Burley, *Physically based shading at Disney*, 2012; B. Burley, *Extending the Disney BRDF to a BSDF with

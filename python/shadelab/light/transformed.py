@@ -179,9 +179,11 @@ def ltc(
     Notes
     -----
     Polygons are clipped exactly at the surface's horizon, then at that of the lobe. Disks, and spheres by their rims,
-    are polygons of 24 corners with the same area. The lobe's fit is the error; a diffuse lobe is `polygon_irradiance`
-    over π, exact. Computed in double whatever the precision. It takes Fresnel's weight and the lobe's shape apart, and
-    knows no shadow.
+    are polygons of 24 corners with the same area. A diffuse lobe is `polygon_irradiance` over π, exact. The error is
+    that of the family of lobes (four times as many angles in the table change nothing): half of the integral of the
+    difference of both lobes as densities is 0.003 to 0.018 seen from above, 0.03 to 0.07 at 60 degrees, 0.07 to 0.2 at
+    85 degrees, for roughness 0.25 to 1. A light all around gives the lobe's whole magnitude. Computed in double
+    whatever the precision. It takes Fresnel's weight and the lobe's shape apart, and knows no shadow.
 
     References
     ----------

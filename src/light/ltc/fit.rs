@@ -1,9 +1,12 @@
 //! The fit of [`super::Table`]: for each roughness and angle the matrix whose lobe is nearest to that of GGX.
 //!
 //! Nearest by the triangular discrimination ∫ (f − g)² / (f + g) dω of both as densities, which is 0 for equal lobes and 2
-//! for disjoint ones, however sharp they are; by directions drawn from both. Four numbers are sought by Nelder and Mead's
+//! for disjoint ones, however sharp they are; by directions drawn from both. The lobe's density is that of its part above
+//! the horizon. Four numbers are sought by Nelder and Mead's
 //! simplex: the stretch along and across the plane of incidence, the shear, and the tilt. Along a row of the table each
 //! fit starts from that of the angle before.
+//!
+//! `python tests/light/test_ltc.py fit` writes the table that is shipped.
 //!
 //! J. A. Nelder, R. Mead, *A simplex method for function minimization*, 1965.
 
@@ -68,12 +71,15 @@ impl Target {
         let squares: Vec<[f64; 2]> =
             (0..steps * steps).map(|k| [middle(k % steps, steps), middle(k / steps, steps)]).collect();
         let mut target = Target { wo, alpha, magnitude: 0.0, grazing: 0.0, drawn: Vec::new(), squares };
-        // The magnitudes are means over a finer square.
+        // The magnitudes are means over a finer square, with points crowded at the ends of the second number, where the
+        // lobe's long tails are.
         let fine = 8 * steps;
         for k in 0..fine * fine {
-            let (wi, pdf) = target.draw([middle(k % fine, fine), middle(k / fine, fine)]);
+            let v = middle(k / fine, fine);
+            let (wi, pdf) = target.draw([middle(k % fine, fine), v * v * (3.0 - 2.0 * v)]);
             if wi.z > 0.0 && pdf > 0.0 {
-                let weight = target.value(wi) / (pdf * (fine * fine) as f64);
+                let crowding = 6.0 * v * (1.0 - v);
+                let weight = crowding * target.value(wi) / (pdf * (fine * fine) as f64);
                 let half = (wi + wo).normalize();
                 target.magnitude += weight;
                 target.grazing += weight * schlick_weight(Lanes::min(wi.dot(half), 1.0));
@@ -96,11 +102,14 @@ impl Target {
     /// The triangular discrimination of the lobe and the target.
     fn distance(&self, shape: Shape) -> f64 {
         let sheared = Sheared::new(shape);
+        let above = sheared.lobe.above();
         let term = |wi: Vec3<f64>, drawn: f64| {
-            let (f, g) = (self.value(wi) / self.magnitude, sheared.lobe.density(wi));
+            // Of the lobe's part above the horizon; draws are from all of it.
+            let all = sheared.lobe.density(wi);
+            let (f, g) = (self.value(wi) / self.magnitude, if wi.z > 0.0 { all / above } else { 0.0 });
             let sum = f + g;
             // Balanced over both ways to draw.
-            let weight = drawn + g;
+            let weight = drawn + all;
             if sum > 0.0 && weight > 0.0 { (f - g) * (f - g) / (sum * weight) } else { 0.0 }
         };
         let mut total = 0.0;

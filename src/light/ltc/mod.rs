@@ -4,7 +4,8 @@
 //! the inverse, the polygon's integral over the lobe is Lambert's formula over the polygon seen from there. A table over
 //! roughness and angle holds the inverse, the lobe's magnitude, and what of it Schlick's grazing term weighs. The formula
 //! gives the share of the lobe that the polygon fills: it is the magnitude that makes light of it. The polygon is clipped
-//! at the surface's horizon first, then at that of the cosine. A cosine lobe needs no fit: [`super::polygon`] has it exactly.
+//! at the surface's horizon first, then at that of the cosine; the share is of the part of the lobe above the surface, so
+//! that a light all around gives the magnitude. A cosine lobe needs no fit: [`super::polygon`] has it exactly.
 //!
 //! E. Heitz, J. Dupuy, S. Hill, D. Neubelt, *Real-time polygonal-light shading with linearly transformed cosines*, 2016;
 //! S. Hill, E. Heitz, *LTC Fresnel approximation*, 2016.
@@ -13,7 +14,7 @@
 pub(crate) mod fit;
 
 use super::Light;
-use super::polygon;
+use super::polygon::{self, doubled};
 use crate::dispatch;
 use crate::parallel::{self, Interrupted, Watch};
 use crate::real::{Lanes, Real};
@@ -108,6 +109,14 @@ impl Lobe {
         Lanes::max(v.z, 0.0) * determinant / (std::f64::consts::PI * squared * squared)
     }
 
+    /// The share of the lobe above the surface's horizon: the horizon is straightened into a great circle, and what a
+    /// cosine lobe has on one side of it is (1 + cos) / 2 by the angle between both axes.
+    #[inline(always)]
+    pub fn above(&self) -> f64 {
+        let [xx, _, zx, _] = self.inverse;
+        0.5 + 0.5 * xx / (xx * xx + zx * zx).sqrt()
+    }
+
     /// The share of the lobe that a polygon fills, seen in the frame of normal and eye; positive where its front is
     /// seen. `scratch` holds corners on the way.
     #[inline(always)]
@@ -156,11 +165,15 @@ pub fn mirrored(
     let across = (wo.x * wo.x + wo.y * wo.y).sqrt();
     let (cos, sin) = if across > 0.0 { (wo.x / across, wo.y / across) } else { (1.0, 0.0) };
     let lobe = table.lobe(alpha, wo.z);
-    let turned = corners.map(|c| {
-        let c = frame.local(c);
-        Vec3::new(cos * c.x + sin * c.y, cos * c.y - sin * c.x, c.z)
-    });
-    let share = lobe.share(turned, scratch);
+    let turned = corners.map(
+        #[inline(always)]
+        |c| {
+            let c = frame.local(c);
+            Vec3::new(cos * c.x + sin * c.y, cos * c.y - sin * c.x, c.z)
+        },
+    );
+    // What a lobe has below the horizon GGX has above it.
+    let share = lobe.share(turned, scratch) / lobe.above();
     [share * lobe.magnitude, share * lobe.grazing]
 }
 
@@ -171,25 +184,28 @@ const ROUND: usize = 24;
 /// it does not shine, or is no polygon. Disks, and spheres as the disks of their rims, become polygons of equal area.
 #[inline(always)]
 pub fn outline<T: Real>(light: &Light<T>, point: Vec3<f64>, corners: &mut Vec<Vec3<f64>>) -> bool {
-    let double = |v: Vec3<T>| v.map(T::to_f64);
     corners.clear();
     let (to, normal, two_sided) = match light {
         Light::Rect(l) => {
-            corners.extend(l.corners().map(|c| double(c) - point));
-            (double(l.center) - point, double(l.normal), l.two_sided)
+            for corner in l.corners() {
+                corners.push(doubled(corner) - point);
+            }
+            (doubled(l.center) - point, doubled(l.normal), l.two_sided)
         }
         Light::Polygon(l) => {
-            corners.extend(l.corners.iter().map(|&c| c - point));
-            (double(l.plane.point) - point, double(l.plane.normal), l.plane.two_sided)
+            for &corner in l.corners.iter() {
+                corners.push(corner - point);
+            }
+            (doubled(l.plane.point) - point, doubled(l.plane.normal), l.plane.two_sided)
         }
         Light::Disk(l) => {
-            let [x, y, n] = [l.frame.x, l.frame.y, l.frame.z].map(double);
-            let to = double(l.center) - point;
+            let (x, y, n) = (doubled(l.frame.x), doubled(l.frame.y), doubled(l.frame.z));
+            let to = doubled(l.center) - point;
             round(to, x, y, l.radius.to_f64(), corners);
             (to, n, l.two_sided)
         }
         Light::Sphere(l) => {
-            let to = double(l.center) - point;
+            let to = doubled(l.center) - point;
             let (axis, radius) = (to.normalize(), l.radius.to_f64());
             let sin = radius / to.dot(axis);
             if !(sin < 1.0) {
