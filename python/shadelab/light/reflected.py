@@ -135,7 +135,7 @@ def unshadowed(
     -----
     Punctual lights, and the diffuse part of area lights with its Fresnel factor, are exact. The mirrors' part of a
     rectangle has a relative error of about 6 % at 16 samples, 2 % at 64 and 0.8 % at 256 (root mean square, a
-    bright rectangle near, roughness 0.5); it is unbiased. For a rectangle about 0.3 µs a point and thread, and 0.1 µs a
+    bright rectangle near, roughness 0.5); it is unbiased. For a rectangle about 0.6 µs a point and thread, and 0.1 µs a
     sample.
 
     References
