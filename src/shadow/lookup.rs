@@ -72,6 +72,13 @@ impl<'a, T: Real> Map<'a, T> {
         })
     }
 
+    /// Whether a place in texels lies on the map.
+    #[inline(always)]
+    pub fn holds(&self, x: T, y: T) -> bool {
+        let zero = T::zero();
+        x >= zero && y >= zero && x < T::of(self.width as f64) && y < T::of(self.height as f64)
+    }
+
     /// The larger side of the map in texels.
     #[inline(always)]
     pub fn extent(&self) -> T {
@@ -98,6 +105,20 @@ fn into_frame<T: Real>([right, up, axis]: [Vec3<T>; 3], v: Vec3<T>) -> Vec3<T> {
 #[inline(always)]
 pub fn all<T: Real, S: Simd>(s: S, v: T) -> T::V8<S> {
     <T::V8<S> as SimdBase<S>>::splat(s, v)
+}
+
+/// The light's image on a plane at `blocker`, seen from a receiver at `depth` and projected into the map: its half
+/// sides in texels. At the receiver and behind it there is none.
+#[inline(always)]
+pub fn light_image<T: Real, const PERSPECTIVE: bool>(
+    map: &Map<'_, T>,
+    depth: T,
+    light: [T; 2],
+    blocker: T,
+) -> [T; 2] {
+    let reach = if PERSPECTIVE { T::one() / blocker - T::one() / depth } else { depth - blocker };
+    let reach = reach.max(T::zero()) * T::of(0.5);
+    [light[0] * reach * map.scale[0], light[1] * reach * map.scale[1]]
 }
 
 /// What is granted to a receiver before it counts as shadowed.
@@ -131,15 +152,37 @@ pub struct Anchor<T> {
     limit: T,
 }
 
-impl<T: Real> Map<'_, T> {
-    /// Where a receiver falls; `Err` holds the answer where there is nothing to look up: NaN for NaN, 1 behind the light.
+/// Where a receiver falls in a map, and how its tangent plane lies there.
+#[derive(Clone, Copy)]
+pub struct Foot<T> {
+    /// Texel coordinates.
+    pub x: T,
+    pub y: T,
+    pub depth: T,
+    /// Change of the plane per texel: of its reciprocal depth (perspective) or of its depth.
+    gx: T,
+    gy: T,
+}
+
+impl<T: Real> Foot<T> {
+    /// How much depth the receiver's plane gains over a texel across and one down.
     #[inline(always)]
-    pub fn anchor<const PERSPECTIVE: bool>(
+    pub fn gain<const PERSPECTIVE: bool>(&self) -> [T; 2] {
+        let per = if PERSPECTIVE { self.depth * self.depth } else { T::one() };
+        [self.gx.abs() * per, self.gy.abs() * per]
+    }
+}
+
+impl<T: Real> Map<'_, T> {
+    /// Where a receiver falls; `Err` holds the answer where there is nothing to look up: NaN for NaN, 1 behind the
+    /// light.
+    #[inline(always)]
+    pub fn foot<const PERSPECTIVE: bool>(
         &self,
         point: [T; 3],
         normal: Option<[T; 3]>,
-        bias: &Bias<T>,
-    ) -> Result<Anchor<T>, T> {
+        normal_offset: T,
+    ) -> Result<Foot<T>, T> {
         let (zero, one) = (T::zero(), T::one());
         let mut q = into_frame(self.frame, Vec3::from(point) - self.origin);
         #[allow(clippy::manual_map)] // As in `at`.
@@ -150,12 +193,12 @@ impl<T: Real> Map<'_, T> {
 
         // Move along the normal by texels of the size that they have at the receiver's depth.
         if let Some(n) = n
-            && bias.normal_offset > zero
+            && normal_offset > zero
         {
             let texel = self.texel[0].max(self.texel[1]);
             let (texel, cosine) =
                 if PERSPECTIVE { (texel * q.z, -n.dot(q) / q.length()) } else { (texel, -n.z) };
-            q = q + n * (bias.normal_offset * texel * (one - cosine * cosine).max(zero).sqrt());
+            q = q + n * (normal_offset * texel * (one - cosine * cosine).max(zero).sqrt());
         }
         let of_normal = if let Some(n) = n { n.x + n.y + n.z } else { zero };
         if (q.x + q.y + q.z + of_normal).is_nan() {
@@ -178,6 +221,20 @@ impl<T: Real> Map<'_, T> {
                 (gx, gy) = (n.x * per * self.texel[0], -n.y * per * self.texel[1]);
             }
         }
+        Ok(Foot { x, y, depth: q.z, gx, gy })
+    }
+
+    /// A receiver as depths are compared with it; `Err` as in [`Map::foot`].
+    #[inline(always)]
+    pub fn anchor<const PERSPECTIVE: bool>(
+        &self,
+        point: [T; 3],
+        normal: Option<[T; 3]>,
+        bias: &Bias<T>,
+    ) -> Result<Anchor<T>, T> {
+        let Foot { x, y, depth, mut gx, mut gy } =
+            self.foot::<PERSPECTIVE>(point, normal, bias.normal_offset)?;
+        let (zero, one) = (T::zero(), T::one());
         let steep = gx.abs() + gy.abs();
         if !bias.plane {
             (gx, gy) = (zero, zero);
@@ -185,13 +242,14 @@ impl<T: Real> Map<'_, T> {
         // A few roundings of the depth itself are granted always.
         let rounding = T::of(16.0) * T::EPSILON;
         let (key, limit) = if PERSPECTIVE {
-            (inverse, one - rounding - bias.constant * inverse - bias.slope * steep * q.z)
+            let inverse = one / depth;
+            (inverse, one - rounding - bias.constant * inverse - bias.slope * steep * depth)
         } else {
-            (q.z - (rounding * q.z.abs() + bias.constant + bias.slope * steep), one)
+            (depth - (rounding * depth.abs() + bias.constant + bias.slope * steep), one)
         };
         let half = T::of(0.5);
         let base = key + gx * (half - x) + gy * (half - y);
-        Ok(Anchor { x, y, depth: q.z, key, base, gx, gy, limit })
+        Ok(Anchor { x, y, depth, key, base, gx, gy, limit })
     }
 
     /// Depths of the texels at offsets (in texels) from a receiver, and a bit for each that blocks it.

@@ -4,17 +4,28 @@
 //! - [`hard`]: one comparison
 //! - [`pcf`]: percentage-closer filtering over a fixed width
 //! - [`pcss`]: percentage-closer soft shadows, whose width follows from the blockers
+//! - [`moment_map`](mod@moment_map): powers or exponentials of depth, which may be filtered beforehand
+//! - [`variance`], [`exponential_variance`], [`moment`]: bounds on the lit fraction from two or four moments
+//! - [`variance_soft`](mod@variance_soft): the same, as wide as the blockers' mean depth asks for
 //! - [`ray_traced`](mod@ray_traced): rays to the light
 //!
-//! The parts: `lookup` (the map, the bias, and the taps that all filters share), `pattern` (where the taps of a filter lie),
-//! `fit` (what a map's window must hold).
+//! The parts: `lookup` (the map, the bias, and the taps that all filters share), `pattern` (where the taps of a filter
+//! lie), `filtered` (means of moments over a part of a map), `tested` (the bounds, and lookups by any of them), `fit`
+//! (what a map's window must hold).
 
+pub mod exponential_variance;
+pub(crate) mod filtered;
 #[cfg_attr(not(feature = "python"), allow(dead_code))] // the face fits, the kernels do not
 pub(crate) mod fit;
 pub mod hard;
 pub(crate) mod lookup;
+pub mod moment;
+pub mod moment_map;
 pub(crate) mod pattern;
 pub mod pcf;
 pub mod pcss;
 pub mod ray_traced;
 pub mod shadow_map;
+pub(crate) mod tested;
+pub mod variance;
+pub mod variance_soft;

@@ -5,6 +5,9 @@
 //! - Box: a lattice of golden-section steps, shifted toroidally by a random vector (R. Cranley, T. Patterson, 1976). Every
 //!   row and column of the square is met as evenly as the number of taps allows, so an edge along an axis has as many
 //!   grey levels as there are taps.
+//! - Tent: the box's points, drawn together so that they are as dense as a tent is high: a filter without corners.
+//! - Poisson: points of a disk that keep their distance, each the farthest from all before it of some candidates, turned
+//!   like Vogel's (D. Mitchell, *Spectrally Optimal Sampling for Distribution Ray Tracing*, 1991).
 //! - Grid: the centres of n × n cells, shifted within a cell.
 
 use crate::real::{Lanes, Real};
@@ -16,6 +19,16 @@ pub enum Kind {
     Vogel,
     Box,
     Grid,
+    Tent,
+    Poisson,
+}
+
+impl Kind {
+    /// Whether receivers turn the points, rather than shift them.
+    #[inline(always)]
+    fn turns(self) -> bool {
+        matches!(self, Kind::Vogel | Kind::Poisson)
+    }
 }
 
 /// Golden angle: cosine and sine of π(3 − √5).
@@ -50,7 +63,8 @@ impl<T: Real> Pattern<T> {
         let side = samples.isqrt();
         let points = match kind {
             Kind::Vogel => vogel(samples),
-            Kind::Box => lattice(samples),
+            Kind::Box | Kind::Tent => lattice(samples),
+            Kind::Poisson => apart(samples),
             Kind::Grid => grid(side),
         };
         let n = points.len();
@@ -78,14 +92,10 @@ impl<T: Real> Pattern<T> {
     #[inline(always)]
     pub fn turn(&self, index: u64, stream: u64) -> Turn<T> {
         let Some(seed) = self.seed else {
-            return if self.kind == Kind::Vogel {
-                Turn(T::one(), T::zero())
-            } else {
-                Turn(T::zero(), T::zero())
-            };
+            return if self.kind.turns() { Turn(T::one(), T::zero()) } else { Turn(T::zero(), T::zero()) };
         };
         let bits = mix(seed ^ mix(2 * index + stream));
-        if self.kind == Kind::Vogel {
+        if self.kind.turns() {
             let [c, s] = self.turns[bits as usize % TURNS];
             Turn(c, s)
         } else {
@@ -107,13 +117,12 @@ impl<T: Real> Pattern<T> {
         let y = <T::V8<S> as SimdBase<S>>::load_array_ref(s, &self.y[block]);
         let (a, b) = (all::<T, S>(s, a), all::<T, S>(s, b));
         let (x, y) = match self.kind {
-            Kind::Vogel => (a * x - b * y, b * x + a * y),
+            Kind::Vogel | Kind::Poisson => (a * x - b * y, b * x + a * y),
             Kind::Grid => (x + a, y + b),
-            // From [-2, 2] back into [-1, 1].
-            Kind::Box => {
-                let (x, y, half, two) =
-                    (x + a, y + b, all::<T, S>(s, T::of(0.5)), all::<T, S>(s, T::of(2.0)));
-                (x - Lanes::round(x * half) * two, y - Lanes::round(y * half) * two)
+            Kind::Box => (wrapped::<T, S>(s, x + a), wrapped::<T, S>(s, y + b)),
+            Kind::Tent => {
+                let (x, y) = (wrapped::<T, S>(s, x + a), wrapped::<T, S>(s, y + b));
+                (tent::<T, S>(s, x), tent::<T, S>(s, y))
             }
         };
         (x * all::<T, S>(s, half[0]), y * all::<T, S>(s, half[1]))
@@ -125,6 +134,20 @@ impl<T: Real> Pattern<T> {
         let left = self.samples - block * BLOCK;
         if left >= BLOCK { (1 << BLOCK) - 1 } else { (1 << left) - 1 }
     }
+}
+
+/// From [-2, 2] back into [-1, 1].
+#[inline(always)]
+fn wrapped<T: Real, S: Simd>(s: S, x: T::V8<S>) -> T::V8<S> {
+    x - Lanes::round(x * all::<T, S>(s, T::of(0.5))) * all::<T, S>(s, T::of(2.0))
+}
+
+/// From even density on [-1, 1] to that of a tent.
+#[inline(always)]
+fn tent<T: Real, S: Simd>(s: S, x: T::V8<S>) -> T::V8<S> {
+    let one = all::<T, S>(s, T::one());
+    let left = Lanes::max(one - Lanes::abs(x), all::<T, S>(s, T::zero()));
+    Lanes::copysign(one - Lanes::sqrt(left), x)
 }
 
 /// The lowest 16 bits as a number in (-½, ½).
@@ -147,6 +170,36 @@ fn vogel(n: usize) -> Vec<(f64, f64)> {
 fn lattice(n: usize) -> Vec<(f64, f64)> {
     let even = |i: usize| (i as f64 + 0.5) / n as f64;
     (0..n).map(|i| (2.0 * even(i) - 1.0, 2.0 * (0.5 + i as f64 * SECTION).fract() - 1.0)).collect()
+}
+
+/// Candidates for each point that keeps its distance.
+const CANDIDATES: usize = 24;
+
+fn apart(n: usize) -> Vec<(f64, f64)> {
+    let mut points: Vec<(f64, f64)> = Vec::with_capacity(n);
+    let mut state = 0;
+    let mut number = || {
+        state += 1;
+        (mix(state) >> 11) as f64 / (1u64 << 52) as f64 - 1.0
+    };
+    for _ in 0..n {
+        let (mut best, mut far) = ((0.0, 0.0), -1.0);
+        let mut left = CANDIDATES;
+        while left > 0 {
+            let (x, y) = (number(), number());
+            if x * x + y * y > 1.0 {
+                continue;
+            }
+            left -= 1;
+            let near =
+                points.iter().map(|p| (p.0 - x) * (p.0 - x) + (p.1 - y) * (p.1 - y)).fold(9.0, f64::min);
+            if near > far {
+                (best, far) = ((x, y), near);
+            }
+        }
+        points.push(best);
+    }
+    points
 }
 
 fn grid(side: usize) -> Vec<(f64, f64)> {

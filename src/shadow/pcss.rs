@@ -13,7 +13,7 @@
 use crate::dispatch;
 use crate::parallel::{self, Interrupted, Watch};
 use crate::real::{Lanes, Real};
-use crate::shadow::lookup::{Anchor, Bias, Map, all, at};
+use crate::shadow::lookup::{Anchor, Bias, Map, all, at, light_image};
 use crate::shadow::pattern::{Pattern, Turn};
 use crate::shadow::pcf::lit_fraction;
 use crate::simd::*;
@@ -98,7 +98,7 @@ fn receiver<T: Real, S: Simd, const PERSPECTIVE: bool>(
 ) -> Found<T> {
     // Blocker search.
     let limit = map.extent() + map.extent();
-    let half = light_image::<T, PERSPECTIVE>(map, a, knobs.light, map.near);
+    let half = light_image::<T, PERSPECTIVE>(map, a.depth, knobs.light, map.near);
     let half = [half[0].min(limit), half[1].min(limit)];
     let search = half[0].max(half[1]);
     let turn = knobs.search.turn(index, 0);
@@ -115,23 +115,9 @@ fn receiver<T: Real, S: Simd, const PERSPECTIVE: bool>(
     let ratio = if PERSPECTIVE { (a.depth - blocker) / blocker } else { a.depth - blocker };
     let penumbra = ratio.max(T::zero()) * knobs.light[0].max(knobs.light[1]);
     let turn = knobs.filter.turn(index, 1);
-    let half = light_image::<T, PERSPECTIVE>(map, a, knobs.light, blocker);
+    let half = light_image::<T, PERSPECTIVE>(map, a.depth, knobs.light, blocker);
     let lit = lit_fraction::<T, S, PERSPECTIVE, true>(s, map, a, knobs.filter, turn, half);
     Found { lit, blocker, penumbra, search }
-}
-
-/// The light's image on a plane at `depth`, seen from the receiver and projected into the map: its half sides in texels.
-/// At the receiver and behind it there is none.
-#[inline(always)]
-fn light_image<T: Real, const PERSPECTIVE: bool>(
-    map: &Map<'_, T>,
-    a: &Anchor<T>,
-    light: [T; 2],
-    depth: T,
-) -> [T; 2] {
-    let reach = if PERSPECTIVE { T::one() / depth - T::one() / a.depth } else { a.depth - depth };
-    let reach = reach.max(T::zero()) * T::of(0.5);
-    [light[0] * reach * map.scale[0], light[1] * reach * map.scale[1]]
 }
 
 /// How many taps block, and their mean depth.

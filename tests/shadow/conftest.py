@@ -52,6 +52,13 @@ def analytic_map(sl, dtype=np.float32, n=256, blocker=2.0, ground=4.0):
     return sl.shadow.ShadowMap(depth, "perspective", [0, 4, 0], DOWN, [-1, 1, -1, 1], blocker, ground)
 
 
+def plane_receivers(n=256, dtype=np.float64, half=4.0):
+    """The ground points under the texel centres of `analytic_map`, and the mean of what lies about each."""
+    at = (np.arange(n) + 0.5) / n * 2 - 1
+    x, z = np.meshgrid(at * half, at * half)
+    return np.stack([x, 0 * x, z], -1).astype(dtype)
+
+
 @pytest.fixture(scope="session")
 def scenes():
     return SimpleNamespace(
@@ -61,4 +68,5 @@ def scenes():
         analytic_map=analytic_map,
         lights=lights,
         towards_light=towards_light,
+        plane_receivers=plane_receivers,
     )

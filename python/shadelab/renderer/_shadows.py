@@ -9,7 +9,9 @@ from .. import _arrays, light
 from ._facts import Facts, beyond_one_map, resolution_for, widest_penumbra
 from .passes import LeftOut, Pass
 
-_TECHNIQUES = ("hard", "pcf", "pcss", "ray_traced")
+_TECHNIQUES = (
+    "hard", "pcf", "pcss", "variance", "exponential_variance", "moment", "variance_soft", "ray_traced",
+)  # fmt: skip
 
 
 def picked(evidence: Any, max_error: float | None, budget_ms: float | None) -> tuple[str, dict[str, Any], str]:

@@ -27,8 +27,8 @@ def _lit(how: Pass, lamp: Any, seen: Seen, chart: Any, bvh: BVH | None) -> Float
     if technique == "ray_traced":
         assert bvh is not None
         return shadow.ray_traced(bvh, seen.points, seen.geometric, lamp, **knobs)
-    techniques: dict[str, Callable[..., Any]] = {"hard": shadow.hard, "pcf": shadow.pcf, "pcss": shadow.pcss}
-    return np.asarray(techniques[technique](chart, seen.points, seen.geometric, **knobs))
+    chart, knobs = shadow._prepared(technique, chart, seen.points, knobs)
+    return np.asarray(getattr(shadow, technique)(chart, seen.points, seen.geometric, **knobs))
 
 
 class _Clock:

@@ -11,8 +11,8 @@ from .. import _arrays
 from .._arrays import Floats
 from .maps import ShadowMap
 
-Kernel: TypeAlias = Literal["vogel", "box", "grid"]
-_KERNELS = ("vogel", "box", "grid")
+Kernel: TypeAlias = Literal["vogel", "box", "grid", "tent", "poisson"]
+_KERNELS = ("vogel", "box", "grid", "tent", "poisson")
 _MAX_SAMPLES = 4096
 
 

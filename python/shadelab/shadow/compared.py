@@ -95,6 +95,7 @@ def pcf(
     radius: float = 1.5,
     units: Literal["texels", "world"] = "texels",
     kernel: Kernel = "vogel",
+    bilinear: bool = False,
     seed: int | None = 0,
     bias: float = 0.0,
     slope_bias: float = 0.05,
@@ -114,8 +115,12 @@ def pcf(
         Half the side of the filter.
     units : {"texels", "world"}
         Whether `radius` is in texels of the map, or in world units at the receiver, parallel to the map's plane.
-    kernel : {"vogel", "box", "grid"}
-        Where the samples lie: on a disk (Vogel's spiral), in a square (a lattice), or in n × n cells of a square.
+    kernel : {"vogel", "box", "grid", "tent", "poisson"}
+        Where the samples lie: on a disk (Vogel's spiral), in a square (a lattice), in n × n cells of a square, in a
+        square and denser towards its middle, or on a disk apart from each other at random.
+    bilinear : bool
+        Each sample compares the four texels about it and weights them by their nearness, as hardware does: four times
+        the reads, and steps of a texel's size no more.
     seed : int or None
         Each receiver turns the disk, or shifts the square's points, by random amounts that follow from the seed and its
         place in the batch: noise instead of banding. None gives all receivers the same points.
@@ -125,7 +130,7 @@ def pcf(
     Returns
     -------
     ndarray, shape (...)
-        The lit fraction, a multiple of 1 / `samples`; NaN where a receiver or normal is NaN.
+        The lit fraction, a multiple of 1 / `samples` unless `bilinear`; NaN where a receiver or normal is NaN.
 
     Raises
     ------
@@ -136,12 +141,14 @@ def pcf(
     -----
     A penumbra of one width everywhere: right for antialiasing, wrong for an area light, whose shadow should harden at
     contact. As `radius` goes to 0 the result is that of `hard`. With normals the filter follows the receiver's tangent
-    plane, so that wide filters need no more bias than narrow ones. Cost: `samples` texel reads.
+    plane, so that wide filters need no more bias than narrow ones. Cost: `samples` texel reads, four times as many with
+    `bilinear`.
 
     References
     ----------
     W. Reeves, D. Salesin, R. Cook, *Rendering Antialiased Shadows with Depth Maps*, 1987. H. Vogel, *A better way to
-    construct the sunflower head*, 1979.
+    construct the sunflower head*, 1979. D. Mitchell, *Spectrally Optimal Sampling for Distribution Ray Tracing*,
+    SIGGRAPH 1991 (points that keep their distance).
 
     Examples
     --------
@@ -155,10 +162,11 @@ def pcf(
     granted = _granted(shadow_map, normals, bias, slope_bias, normal_offset, receiver_plane)
     taps = _taps("samples", kernel, samples, seed)
     half = _arrays.number("radius", radius, 0.0)
+    smooth = _arrays.flag("bilinear", bilinear)
     texels = _arrays.choice("units", units, ("texels", "world")) == "texels"
     shape, points, n = _receivers(shadow_map, receivers, normals)
     result, flat = _result(out, shape, points.dtype)
     perspective = shadow_map.projection == "perspective"
     geometry = shadow_map._geometry()
-    _kernels.pcf(shadow_map.depth, geometry, perspective, points, n, taps, half, texels, granted, flat)
+    _kernels.pcf(shadow_map.depth, geometry, perspective, points, n, taps, (half, texels, smooth), granted, flat)
     return result

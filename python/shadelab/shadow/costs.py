@@ -20,17 +20,25 @@ class Cost(NamedTuple):
     """The most bytes read from the map."""
 
 
+_COMPARED = ("hard", "pcf", "pcss", "ray_traced")
+_FILTERED = ("variance", "exponential_variance", "moment", "variance_soft")
+# Texels of one lookup by the map's filter: between four, between four of two levels, four nodes of a table at four
+# corners.
+_READS = {"none": 4, "gaussian": 4, "mip": 8, "summed_area": 16}
+
+
 def cost(technique: str, *, itemsize: int = 4, **knobs: Any) -> Cost:
     """What a technique of this chapter asks for one receiver, whatever the machine.
 
     Parameters
     ----------
-    technique : {"hard", "pcf", "pcss", "ray_traced"}
+    technique : {"hard", "pcf", "pcss", "ray_traced", "variance", "exponential_variance", "moment", "variance_soft"}
         The function's name.
     itemsize : int
-        Bytes of a texel.
+        Bytes of a number in a texel.
     **knobs
-        The function's own arguments; those that do not matter to the cost are ignored.
+        The function's own arguments, and those of `moment_map` (`kind`, `filter`, `bits`, `exponents`); those that do
+        not matter to the cost are ignored.
 
     Returns
     -------
@@ -45,14 +53,35 @@ def cost(technique: str, *, itemsize: int = 4, **knobs: Any) -> Cost:
     --------
     >>> cost("pcss", blocker_samples=16, filter_samples=32)
     Cost(texel_reads=48, rays=0, bytes=192)
+    >>> cost("moment", filter="mip", bits=16)
+    Cost(texel_reads=8, rays=0, bytes=64)
     """
-    _arrays.choice("technique", technique, ("hard", "pcf", "pcss", "ray_traced"))
+    _arrays.choice("technique", technique, (*_COMPARED, *_FILTERED))
     if technique == "ray_traced":
         return Cost(0, int(knobs.get("samples", 16)), 0)
+    if technique in _FILTERED:
+        return _of_moments(technique, itemsize, knobs)
     if technique == "hard":
         reads = 1
     elif technique == "pcf":
-        reads = int(knobs.get("samples", 16))
+        reads = int(knobs.get("samples", 16)) * (4 if knobs.get("bilinear") else 1)
     else:
         reads = int(knobs.get("blocker_samples", 16)) + int(knobs.get("filter_samples", 32))
     return Cost(reads, 0, reads * itemsize)
+
+
+def _of_moments(technique: str, itemsize: int, knobs: dict[str, Any]) -> Cost:
+    kind = knobs.get("kind", "moment" if technique == "variance_soft" else technique)
+    chosen = "mip" if technique == "variance_soft" else "gaussian"
+    filter = knobs.get("filter", chosen)
+    reads = _READS[_arrays.choice("filter", filter, tuple(_READS))] * (2 if technique == "variance_soft" else 1)
+    channels = 4 if kind == "moment" or (kind == "exponential_variance" and _both(knobs)) else 2
+    size = 2 if knobs.get("bits") == 16 else itemsize
+    if filter == "summed_area" and knobs.get("precision", "double") == "double":
+        size = 8
+    return Cost(reads, 0, reads * channels * size)
+
+
+def _both(knobs: dict[str, Any]) -> bool:
+    exponents = knobs.get("exponents", (40.0, 5.0))
+    return not isinstance(exponents, (int, float)) and len(exponents) == 2

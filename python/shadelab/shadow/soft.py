@@ -102,7 +102,7 @@ def pcss(
     search : {"region", "frustum"}
         What counts as a blocker: as first published, all that blocks in the region of the map that the light could be
         hidden in; or of that only what lies between the receiver and the light, which wants many `blocker_samples`.
-    kernel : {"vogel", "box", "grid"}, optional
+    kernel : {"vogel", "box", "grid", "tent", "poisson"}, optional
         As in `pcf`; "box" is the shape of a rectangular light and the default for it, "vogel" that of a disk.
     seed, bias, slope_bias, normal_offset, receiver_plane
         As in `pcf`.

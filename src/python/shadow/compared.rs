@@ -38,12 +38,12 @@ pub fn pcf(
     receivers: &Bound<'_, PyAny>,
     normals: Option<&Bound<'_, PyAny>>,
     taps: Taps<'_>,
-    radius: f64,
-    texels: bool,
+    width: (f64, bool, bool),
     granted: Granted,
     out: &Bound<'_, PyAny>,
 ) -> PyResult<()> {
     use crate::shadow::pcf::{Radius, pcf as kernel};
+    let (radius, texels, bilinear) = width;
     real!(depth, T => {
         let (depth, points) = (In::<T>::of("depth", depth)?, In::<T>::of("receivers", receivers)?);
         let normals = normals.map(|n| In::<T>::of("normals", n)).transpose()?;
@@ -53,7 +53,7 @@ pub fn pcf(
         let (p, n) = (points.items()?, normals.as_ref().map(In::items).transpose()?);
         let out = out.slice()?;
         run(py, None, |watch| {
-            by_projection!(perspective, T, kernel, (watch, &map, p, n, &taps, radius, &bias, out))
+            by_projection!(perspective, T, kernel, (watch, &map, p, n, &taps, radius, bilinear, &bias, out))
         })
     })
 }

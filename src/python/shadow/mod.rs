@@ -1,6 +1,7 @@
 //! Bindings of `shadow`: what lookups share is here, a file for each of the faces.
 
 mod maps;
+mod moments;
 mod compared;
 mod rays;
 mod soft;
@@ -41,6 +42,8 @@ pub fn pattern<T: Real>((kind, samples, seed): Taps<'_>) -> PyResult<Pattern<T>>
         "vogel" => Kind::Vogel,
         "box" => Kind::Box,
         "grid" => Kind::Grid,
+        "tent" => Kind::Tent,
+        "poisson" => Kind::Poisson,
         _ => return Err(PyValueError::new_err("kernel: unknown")),
     };
     Ok(Pattern::new(kind, samples, seed))
@@ -64,6 +67,18 @@ pub mod shadow {
     use super::maps::shadow_map;
     #[pymodule_export]
     use super::maps::span;
+    #[pymodule_export]
+    use super::moments::chebyshev_bound;
+    #[pymodule_export]
+    use super::moments::exponential_variance;
+    #[pymodule_export]
+    use super::moments::filtered;
+    #[pymodule_export]
+    use super::moments::moment_bound;
+    #[pymodule_export]
+    use super::moments::moment_map;
+    #[pymodule_export]
+    use super::moments::moment_quantize;
     #[pymodule_export]
     use super::rays::ray_traced;
     #[pymodule_export]

@@ -195,6 +195,26 @@ def _pcss(
     return np.stack([shadow.pcss(m, inputs.points, inputs.geometric, **each) for m in maps])
 
 
+def _moment_maps(technique: str) -> Any:
+    """The moment map of each light, drawn and filtered each frame."""
+
+    def prepare(inputs: Inputs, resolution: int, **knobs: Any) -> list[Any]:
+        return [shadow._prepared(technique, m, inputs.points, knobs)[0] for m in _maps(inputs, resolution)]
+
+    return prepare
+
+
+def _filtered(technique: str) -> Any:
+    """Lookups into moment maps; what is not a knob of the map is one of the lookup."""
+    lookup = getattr(shadow, technique)
+
+    def run(inputs: Inputs, maps: list[Any], resolution: int, light_bleeding: float = 0.0, **of_map: Any) -> Array:
+        each = {"light_bleeding": light_bleeding}
+        return np.stack([lookup(m, inputs.points, inputs.geometric, **each) for m in maps])
+
+    return run
+
+
 def _ray_traced(inputs: Inputs, prepared: None, samples: int, seed: int) -> Array:
     return np.stack([_rays(inputs, l, samples, seed) for l in inputs.lights])
 
@@ -210,6 +230,13 @@ def _counters(technique: str) -> Any:
         cost = shadow.cost(technique, itemsize=inputs.points.itemsize, **knobs)
         lights = len(inputs.lights)
         resident = lights * resolution**2 * inputs.points.itemsize if resolution else inputs.bvh.stats().bytes
+        if technique in _MOMENTS:
+            channels = 2 if knobs.get("kind", technique) == "variance" else 4
+            size = (
+                8 if knobs.get("filter") == "summed_area" else 2 if knobs.get("bits") == 16 else inputs.points.itemsize
+            )
+            texels = -((-resolution // knobs.get("reduce", 1)) ** 2)
+            resident += round(lights * texels * channels * size * (4 / 3 if knobs.get("filter") == "mip" else 1))
         return {"taps/px": cost.texel_reads * lights, "rays/px": cost.rays * lights, "bytes": resident}
 
     return count
@@ -255,6 +282,10 @@ twentieth is divided by. Surfaces reflect diffusely alone, since the question is
 _MASK_ABOUT = f"""Pixels whose lit fraction is strictly between 0 and 1 (by {_MASK_RAYS} rays), widened by a 60th of the
 picture's height to every side so that halos and leaks beside penumbrae count, where any light would arrive."""
 
+_MOMENTS = ("variance", "exponential_variance", "moment", "variance_soft")
+
+_FIXED: Any = {"resolution": (1024,), "reduce": (2,), "sigma": (4.0, 16.0)}
+
 _PCSS_SETTINGS = ((512, 16, 32), (1024, 8, 16), (1024, 16, 32), (1024, 32, 64), (2048, 32, 64))
 
 
@@ -289,6 +320,7 @@ def _candidates() -> list[Candidate]:
             about="Percentage-closer soft shadows: filters over the width that the mean depth of the blockers calls "
             "for. Blockers at several depths count as one; what the light's centre does not see cannot block.",
         ),
+        *_of_moments(),
         Candidate(
             "ray_traced",
             _ray_traced,
@@ -297,6 +329,37 @@ def _candidates() -> list[Candidate]:
             seeded=True,
             about="Rays to points of the light. Unbiased visibility; noise falls with their number. The tree that they "
             "are traced in is built once for a scene and not counted.",
+        ),
+    ]
+
+
+def _of_moments() -> list[Candidate]:
+    """Maps that are filtered before the lookup."""
+    about = {
+        "variance": "A bound from the mean and variance of depth, over a Gaussian of fixed width (in texels). Light "
+        "bleeds through blockers at two depths.",
+        "exponential_variance": "The same of depths that exponentials have stretched: less light bleeds.",
+        "moment": "A bound from four moments of depth: exact for two depths; light bleeds where there are more.",
+        "variance_soft": "Filters as wide as the blockers' mean depth calls for, search and filter both by one read of "
+        "a table or of mips: no noise, at a cost that does not depend on the penumbra.",
+    }
+    fixed = [
+        Candidate(name, _filtered(name), knobs, _moment_maps(name), _counters(name), about=about[name])
+        for name, knobs in (
+            ("variance", {**_FIXED, "light_bleeding": (0.0, 0.2)}),
+            ("exponential_variance", _FIXED),
+            ("moment", _FIXED),
+        )
+    ]
+    soft = [
+        {"resolution": 1024, "kind": kind, "filter": filter, "reduce": 2}
+        for kind, filter in (("variance", "summed_area"), ("moment", "summed_area"), ("moment", "mip"))
+    ]
+    name = "variance_soft"
+    return [
+        *fixed,
+        Candidate(
+            name, _filtered(name), soft, _moment_maps(name), _counters(name), domain=_area_light, about=about[name]
         ),
     ]
 
