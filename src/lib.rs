@@ -23,6 +23,7 @@ pub mod environment;
 pub mod raster;
 pub mod pathtrace;
 pub mod shadow;
+pub mod renderer;
 
 #[cfg(feature = "python")]
 mod python;

@@ -83,10 +83,16 @@ pub enum Mirrors<'a> {
 }
 
 /// What a thread works with.
-struct Desk {
+pub struct Desk {
     corners: Vec<Vec3<f64>>,
     scratch: Vec<Vec3<f64>>,
     few: Vec<[u32; 3]>,
+}
+
+impl Default for Desk {
+    fn default() -> Self {
+        Desk { corners: Vec::new(), scratch: Vec::new(), few: digits(0, 16) }
+    }
 }
 
 /// Sobol' points before scrambling, in three dimensions: computed once, scrambled for every receiver.
@@ -98,7 +104,13 @@ pub fn digits(start: u32, count: u32) -> Vec<[u32; 3]> {
 impl<T: Real> Receiver<T> {
     /// Radiance towards the eye from one light.
     #[inline(always)]
-    fn unshadowed(&self, light: &Light<T>, stream: u64, mirrors: Mirrors<'_>, desk: &mut Desk) -> Vec3<T> {
+    pub fn unshadowed(
+        &self,
+        light: &Light<T>,
+        stream: u64,
+        mirrors: Mirrors<'_>,
+        desk: &mut Desk,
+    ) -> Vec3<T> {
         if light.has_area() {
             let mirrored = match mirrors {
                 Mirrors::Transformed if light.has_outline() => self.transformed(light, desk),
@@ -246,7 +258,7 @@ pub fn unshadowed_many<T: Real>(
     // About a microsecond for every light and ten samples.
     let piece = (4096 / (1 + lights.len() * (1 + samples / 16))).max(64);
     parallel::for_each(watch, out, piece, |first, out| {
-        let mut desk = Desk { corners: Vec::new(), scratch: Vec::new(), few: digits(0, 16) };
+        let mut desk = Desk::default();
         dispatch!(_s => {
             for (i, out) in (first..).zip(out.iter_mut()) {
                 // By hand: a closure would be called outside the dispatch.

@@ -13,6 +13,7 @@ mod math;
 mod mesh;
 mod pathtrace;
 mod raster;
+mod renderer;
 mod runtime;
 mod sampling;
 mod shadow;
@@ -25,7 +26,7 @@ mod _kernels {
     #[pymodule_export]
     use super::{
         accel::accel, brdf::brdf, color::color, environment::environment, geometry::geometry, image::image,
-        light::light, math::math, mesh::mesh, pathtrace::pathtrace, raster::raster, runtime::runtime,
-        sampling::sampling, shadow::shadow, transform::transform,
+        light::light, math::math, mesh::mesh, pathtrace::pathtrace, raster::raster, renderer::renderer,
+        runtime::runtime, sampling::sampling, shadow::shadow, transform::transform,
     };
 }

@@ -7,6 +7,7 @@
 
 use crate::accel::{Bvh, Ray};
 use crate::dispatch;
+use crate::light::Light;
 use crate::parallel::{self, Interrupted, Watch};
 use crate::real::Real;
 use crate::sampling::sobol::{self, Scramble};
@@ -15,7 +16,7 @@ use crate::simd::*;
 use crate::vec::Vec3;
 
 /// What rays are sent to.
-#[derive(Clone, Copy)]
+#[derive(Clone)]
 pub enum Emitter<T> {
     Point {
         position: Vec3<T>,
@@ -29,6 +30,8 @@ pub enum Emitter<T> {
         u: Vec3<T>,
         v: Vec3<T>,
     },
+    /// Any light with an area, by its own draws.
+    Area(Light<T>),
 }
 
 pub struct Knobs<T> {
@@ -147,16 +150,17 @@ fn push<T: Real>(
         origin = origin + Vec3::from(n) * knobs.offset;
     }
     let short = T::one() - T::of(SHORT_OF_LIGHT);
-    match knobs.emitter {
+    match &knobs.emitter {
         Emitter::Point { position } => {
-            let ray = to_point(origin, position, short, face);
-            batch.add(owner, ray, weight(normal, position - origin, None));
+            let ray = to_point(origin, *position, short, face);
+            batch.add(owner, ray, weight(normal, *position - origin, None));
         }
         Emitter::Directional { towards } => {
             let ray = Ray { ignore_face: face, ..Ray::new(origin.to_array(), towards.to_array()) };
-            batch.add(owner, ray, weight(normal, towards, None));
+            batch.add(owner, ray, weight(normal, *towards, None));
         }
         Emitter::Rect { center, u, v } => {
+            let (center, u, v) = (*center, *u, *v);
             let (x, y) = (Scramble::new(knobs.seed, index, 0), Scramble::new(knobs.seed, index, 1));
             let (half, facing) = (T::of(0.5), u.cross(v));
             for &[a, b] in pattern {
@@ -164,6 +168,20 @@ fn push<T: Real>(
                 let w = weight(normal, target - origin, Some(facing));
                 if w > T::zero() {
                     batch.add(owner, to_point(origin, target, short, face), w);
+                }
+            }
+        }
+        Emitter::Area(light) => {
+            let (x, y) = (Scramble::new(knobs.seed, index, 0), Scramble::new(knobs.seed, index, 1));
+            for &[a, b] in pattern {
+                let Some(s) = light.sight(origin, [x.fraction(a), y.fraction(b)]) else { continue };
+                let w = match normal {
+                    Some(n) => Vec3::from(n).dot(s.wi).max(T::zero()) / s.pdf,
+                    None => T::one(),
+                };
+                if w > T::zero() {
+                    let ray = Ray::new(origin.to_array(), s.wi.to_array());
+                    batch.add(owner, Ray { t_max: s.distance * short, ignore_face: face, ..ray }, w);
                 }
             }
         }

@@ -4,14 +4,16 @@
 `shadelab.plan`, `shadelab.render`.
 """
 
-from . import frames, passes, pictures, plans
+from . import frames, passes, pictures, plans, shading
 from .frames import *  # noqa: F403
 from .passes import *  # noqa: F403
 from .pictures import *  # noqa: F403
 from .plans import *  # noqa: F403
+from .shading import *  # noqa: F403
 
 __all__: list[str] = []
 __all__ += frames.__all__
 __all__ += passes.__all__
 __all__ += pictures.__all__
 __all__ += plans.__all__
+__all__ += shading.__all__

@@ -8,9 +8,9 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from .. import light, mesh, raster, shadow
+from .. import mesh, raster
 from .._arrays import Floats
-from ._facts import corners_of
+from ._facts import highest
 
 
 @dataclass(frozen=True)
@@ -22,8 +22,14 @@ class Seen:
     points: Floats
     geometric: Floats
     shading: Floats
-    base_color: Floats
+    inside: NDArray[np.bool_]
+    """Whether a face is seen from behind."""
+    colors: Floats | None
+    """Factors of the materials' colours."""
     material: NDArray[np.int32]
+    u: Floats
+    v: Floats
+    """Where on their faces, by barycentric coordinates."""
 
     def spread(self, values: Floats, fill: float) -> Floats:
         """Values of receivers as a picture."""
@@ -51,24 +57,22 @@ def g_buffer(arrays: Any, camera: Any, size: tuple[int, int]) -> Seen:
     geometric = np.nan_to_num(mesh.face_normals(arrays.positions, arrays.faces))[face]
     shading = np.where(shading.any(-1, keepdims=True), shading, geometric)
     away = points - np.asarray(camera.eye, np.float32)
-    geometric = np.where(np.einsum("ij,ij->i", geometric, away)[:, None] > 0, -geometric, geometric)
+    inside = np.einsum("ij,ij->i", geometric, away) > 0
+    geometric = np.where(inside[:, None], -geometric, geometric)
     shading = np.where(np.einsum("ij,ij->i", shading, geometric)[:, None] < 0, -shading, shading)
     material = drawn.material[covered]
-    base = arrays.base_color[material]
+    colors = None
     if arrays.colors is not None:
         where = raster.Raster(drawn.face, drawn.u, drawn.v, drawn.depth)
-        base = base * raster.interpolate(arrays.colors, arrays.faces, where)[covered]
-    points, geometric, shading, base = (np.ascontiguousarray(x, np.float32) for x in (points, geometric, shading, base))
-    return Seen(drawn.face, covered, points, geometric, shading, base, material)
+        colors = np.ascontiguousarray(raster.interpolate(arrays.colors, arrays.faces, where)[covered], np.float32)
+    # Where interpolation turns the normal away from the eye (silhouettes), the face's serves.
+    shading = np.where(np.einsum("ij,ij->i", shading, away)[:, None] >= 0, geometric, shading)
+    points, geometric, shading = (np.ascontiguousarray(x, np.float32) for x in (points, geometric, shading))
+    return Seen(
+        drawn.face, covered, points, geometric, shading, inside, colors, material, drawn.u[covered], drawn.v[covered]
+    )
 
 
 def above_horizon(lamp: Any, seen: Seen) -> NDArray[np.bool_]:
-    """Whether any part of a light is above the plane of the surface itself, whatever the shading normal says."""
-    n = seen.geometric
-    if isinstance(lamp, light.DirectionalLight):
-        # Of unit length before it is rounded: in single precision 1e-300 is nothing.
-        direction = shadow._unit("direction", np.asarray(lamp.direction, np.float64))
-        return np.asarray(n @ direction.astype(n.dtype) < 0)
-    corners = [np.asarray(lamp.position)] if isinstance(lamp, light.PointLight) else corners_of(lamp)
-    here = np.einsum("ij,ij->i", seen.points, n)
-    return np.asarray(np.max([n @ corner.astype(n.dtype) for corner in corners], axis=0) > here)
+    """Whether any part of a light with an outline is above the plane of the surface itself."""
+    return np.asarray(highest(lamp, seen.geometric) > np.einsum("ij,ij->i", seen.points, seen.geometric))

@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from .. import _arrays, light, raster
+from .. import _arrays, light, raster, shadow
 
 _RESOLUTIONS = (256, 512, 1024, 2048)
 
@@ -91,17 +91,57 @@ def brightness(lamp: Any) -> float:
     return float(np.max(emitted))
 
 
-def rect_depths(lamp: light.RectLight, positions: NDArray[np.float64]) -> NDArray[np.float64]:
-    axis = np.cross(lamp.edge_u, lamp.edge_v)
-    return np.asarray((positions - np.asarray(lamp.center)) @ (axis / np.linalg.norm(axis)))
+def flat(lamp: Any) -> tuple[NDArray[np.float64], NDArray[np.float64]] | None:
+    """The middle and the normal of a flat light."""
+    if isinstance(lamp, light.PolygonLight):
+        return np.mean(lamp.corners, 0), np.asarray(lamp.normal)
+    if isinstance(lamp, light.RectLight | light.DiskLight):
+        return np.asarray(lamp.center), np.asarray(shadow._unit("normal", np.asarray(lamp.normal)))
+    return None
+
+
+def outline(lamp: Any) -> NDArray[np.float64] | None:
+    """Points whose hull holds a light with an outline, (n, 3)."""
+    if isinstance(lamp, light.RectLight | light.PolygonLight):
+        return np.asarray(lamp.corners)
+    if isinstance(lamp, light.DiskLight):
+        normal = shadow._unit("normal", np.asarray(lamp.normal))
+        side = np.eye(3)[int(np.argmin(np.abs(normal)))]
+        x = shadow._unit("normal", np.cross(normal, side)) * lamp.radius
+        y = np.cross(normal, x)
+        return np.asarray(lamp.center) + [a * x + b * y for a in (-1, 1) for b in (-1, 1)]
+    if isinstance(lamp, light.SphereLight):
+        turns = np.array(np.meshgrid(*[(-1, 1)] * 3)).reshape(3, -1).T
+        return np.asarray(lamp.center) + turns * lamp.radius
+    return None
+
+
+def highest(lamp: Any, directions: NDArray[Any]) -> NDArray[Any]:
+    """How far a light with an outline reaches along unit directions (n, 3), from the origin."""
+    if isinstance(lamp, light.SphereLight | light.DiskLight):
+        reach: Any = lamp.radius
+        if isinstance(lamp, light.DiskLight):
+            along = directions @ shadow._unit("normal", np.asarray(lamp.normal)).astype(directions.dtype)
+            reach = reach * np.sqrt(np.maximum(1 - along * along, 0))
+        return np.asarray(directions @ np.asarray(lamp.center, directions.dtype) + reach)
+    corners = np.asarray(lamp.corners, directions.dtype)
+    return np.asarray((directions @ corners.T).max(-1))
+
+
+def depths_before(lamp: Any, positions: NDArray[np.float64]) -> NDArray[np.float64]:
+    """How far positions are before a flat light, or from a sphere."""
+    plane = flat(lamp)
+    if plane is None:
+        return np.asarray(np.linalg.norm(positions - np.asarray(lamp.center), axis=-1) - lamp.radius)
+    return np.asarray((positions - plane[0]) @ plane[1])
 
 
 def unlit(lamp: Any, facts: Facts) -> str:
     """Why a light reaches nothing; empty if it may."""
     if brightness(lamp) == 0.0:
         return "it emits nothing"
-    if isinstance(lamp, light.RectLight) and not lamp.two_sided:
-        depths = rect_depths(lamp, facts.positions[np.unique(facts.faces)])
+    if flat(lamp) is not None and not lamp.two_sided:
+        depths = depths_before(lamp, facts.positions[np.unique(facts.faces)])
         if depths.max(initial=-math.inf) <= 1e-6 * facts.extent:
             return "it faces away from every surface"
     return ""
@@ -110,26 +150,35 @@ def unlit(lamp: Any, facts: Facts) -> str:
 def beyond_one_map(lamp: Any, facts: Facts) -> str:
     """Why one shadow map cannot see what a light shines on; empty if it can."""
     used = facts.positions[np.unique(facts.faces)]
-    if isinstance(lamp, light.RectLight):
-        if lamp.two_sided and rect_depths(lamp, used).min() < -1e-6 * facts.extent:
+    if flat(lamp) is not None:
+        if lamp.two_sided and depths_before(lamp, used).min() < -1e-6 * facts.extent:
             return "the light shines to both sides, and a map sees one"
-    elif isinstance(lamp, light.PointLight):
+    elif isinstance(lamp, light.SpotLight):
+        if lamp.outer_angle > math.radians(65.0):
+            return "the light's cone is wider than a map can look"
+    elif isinstance(lamp, light.PointLight | light.SphereLight):
         # Whether the bounds' corners lie in the cone of a map towards their middle.
+        position = np.asarray(lamp.position if isinstance(lamp, light.PointLight) else lamp.center)
         low, high = used.min(0), used.max(0)
         corners = np.array(np.meshgrid(*zip(low, high, strict=True), indexing="ij")).reshape(3, -1).T
-        away, axis = corners - lamp.position, (low + high) / 2 - lamp.position
+        away, axis = corners - position, (low + high) / 2 - position
         along, length = away @ axis, np.linalg.norm(away, axis=-1) * np.linalg.norm(axis)
         if (along <= length * math.cos(math.radians(65.0))).any():
             return "the light stands close to or within the scene, and one map cannot see all around"
     return ""
 
 
-def widest_penumbra(lamp: light.RectLight, facts: Facts) -> float:
+def widest_penumbra(lamp: Any, facts: Facts) -> float:
     """A bound by similar triangles: the nearest blocker over the farthest receiver."""
-    depths = rect_depths(lamp, facts.positions[np.unique(facts.faces)])
+    depths = depths_before(lamp, facts.positions[np.unique(facts.faces)])
     if depths.min() <= 0.0:
         return math.inf
-    side = max(float(np.linalg.norm(lamp.edge_u)), float(np.linalg.norm(lamp.edge_v)))
+    if isinstance(lamp, light.RectLight):
+        side = max(float(np.linalg.norm(lamp.edge_u)), float(np.linalg.norm(lamp.edge_v)))
+    elif isinstance(lamp, light.PolygonLight):
+        side = max(math.dist(a, b) for a in lamp.corners for b in lamp.corners)
+    else:
+        side = 2.0 * float(lamp.radius)
     return side * float(depths.max() / depths.min() - 1.0)
 
 
@@ -154,8 +203,3 @@ def checked_size(size: Any) -> tuple[int, int]:
         kind: type[Exception] = TypeError if np.ndim(size) == 0 else ValueError
         raise kind(f"size: expected (width, height), got {size!r}") from None
     return _arrays.count("size", width, 1, raster.MAX_SIZE), _arrays.count("size", height, 1, raster.MAX_SIZE)
-
-
-def corners_of(lamp: light.RectLight) -> list[NDArray[np.float64]]:
-    center, u, v = (np.asarray(x, np.float64) for x in (lamp.center, lamp.edge_u, lamp.edge_v))
-    return [center + (a * u + b * v) / 2 for a in (-1, 1) for b in (-1, 1)]

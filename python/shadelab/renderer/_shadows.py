@@ -6,7 +6,7 @@ import math
 from typing import Any
 
 from .. import _arrays, light
-from ._facts import Facts, beyond_one_map, resolution_for, widest_penumbra
+from ._facts import Facts, beyond_one_map, outline, resolution_for, widest_penumbra
 from .passes import LeftOut, Pass
 
 _TECHNIQUES = (
@@ -33,17 +33,21 @@ def picked(evidence: Any, max_error: float | None, budget_ms: float | None) -> t
 
 
 def shadow_passes(
-    lamp: Any, suffix: str, facts: Facts, measured: tuple[str, dict[str, Any], str] | None
+    lamp: Any, suffix: str, facts: Facts, measured: tuple[str, dict[str, Any], str] | None, bounded: bool
 ) -> tuple[list[Pass], list[LeftOut]]:
     """How the shadow of one light is found, for a light that reaches something."""
     if facts.unshadowed:
         return [], [LeftOut(f"shadow{suffix}", facts.unshadowed)]
+    if isinstance(lamp, light.AmbientLight):
+        why = "it comes from everywhere: what hides some of it is occlusion, not shadow"
+        return [], [LeftOut(f"shadow{suffix}", why)]
     left_out: list[LeftOut] = []
     settings: dict[str, Any] = {}
     width, footprint = 0.0, facts.nearest * facts.pixel
-    if isinstance(lamp, light.RectLight):
+    soft = outline(lamp) is not None
+    if soft:
         width = widest_penumbra(lamp, facts)
-    if not isinstance(lamp, light.RectLight):
+    if not soft:
         technique, reason = "hard", "the light has no extent: its shadows have no penumbra"
         left_out.append(LeftOut(f"penumbra{suffix}", "no area light: a hard shadow suffices"))
     elif width < footprint:
@@ -52,6 +56,8 @@ def shadow_passes(
         left_out.append(LeftOut(f"penumbra{suffix}", "narrower than a pixel: a hard shadow suffices"))
     elif measured is not None:
         technique, settings, reason = measured
+    elif bounded:
+        raise ValueError("evidence: expected the result of a study beside max_error or budget_ms, for soft shadows")
     else:
         technique, settings = "pcss", {"blocker_samples": 16, "filter_samples": 32}
         reason = "an area light, with penumbrae as wide as " + (
@@ -62,7 +68,7 @@ def shadow_passes(
     resolution = settings.pop("resolution", None)
     beyond = beyond_one_map(lamp, facts) if technique != "ray_traced" else ""
     if beyond:
-        samples = 16 if isinstance(lamp, light.RectLight) else 1
+        samples = 16 if soft else 1
         technique, settings, reason = "ray_traced", {"samples": samples}, beyond
     if technique == "ray_traced":
         left_out.append(LeftOut(f"shadow map{suffix}", "rays need none"))

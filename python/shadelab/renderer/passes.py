@@ -3,11 +3,12 @@
 from __future__ import annotations
 
 import html
+import math
 from collections.abc import Mapping
 from dataclasses import dataclass, field
 from typing import Any
 
-__all__ = ["LeftOut", "Pass", "Plan"]
+__all__ = ["LeftOut", "Pass", "Plan", "Shading"]
 
 
 @dataclass(frozen=True)
@@ -28,6 +29,26 @@ class LeftOut:
 
 
 @dataclass(frozen=True)
+class Shading:
+    """How a material is shaded, and how far that is off."""
+
+    material: str
+    """Its name, or that of its model."""
+    model: Any
+    """What is evaluated: a model of `shadelab.brdf`, the material's own or a simpler one."""
+    kind: str
+    """The model's name."""
+    method: str
+    """For light from areas: see `shadelab.renderer.shade`."""
+    samples: int
+    error: float
+    """Root mean square over where the material is seen, over its mean radiance; NaN if it is not in view.
+
+    Measured for the plan, beside the material itself under many samples."""
+    reason: str
+
+
+@dataclass(frozen=True)
 class Plan:
     """The passes of a frame in order, and what was left out."""
 
@@ -36,6 +57,8 @@ class Plan:
     size: tuple[int, int]
     lights: int | None = None
     """How many lights the scene has that it was made for; None if it does not say."""
+    shading: tuple[Shading, ...] = ()
+    """Of each material of the flattened scene; empty: all by themselves, by samples."""
 
     def find(self, name: str) -> Pass | None:
         """The pass of a name, None if it was left out.
@@ -57,14 +80,24 @@ class Plan:
         for number, p in enumerate(self.passes, 1):
             settings = ", ".join(f"{k}={v!r}" for k, v in p.settings.items())
             lines.append(f"{number:3}. {p.name:{width}}  {p.reason}" + (f" ({settings})" if settings else ""))
+        lines += [f"  *  {self._about(x)}  {x.reason}" for x in self.shading]
         lines += [f"  -  {x.name:{width}}  left out: {x.reason}" for x in self.left_out]
         return "\n".join(lines)
+
+    @staticmethod
+    def _about(shading: Shading) -> str:
+        how = "" if shading.kind == "diffuse" and shading.method != "point" else shading.method.replace("_", " ")
+        if how == "sampling":
+            how = f"{shading.samples} samples" if shading.samples else ""
+        error = "" if math.isnan(shading.error) else f", error {shading.error:.1%}"
+        return f"{shading.material}: {shading.kind}" + (f", {how}" if how else "") + error
 
     def _repr_html_(self) -> str:
         rows = []
         for number, p in enumerate(self.passes, 1):
             settings = ", ".join(f"{k}={v!r}" for k, v in p.settings.items())
             rows.append((str(number), p.name, p.reason, settings))
+        rows += [("*", x.material, x.reason, self._about(x)) for x in self.shading]
         rows += [("–", x.name, f"left out: {x.reason}", "") for x in self.left_out]
         body = "".join("<tr>" + "".join(f"<td>{html.escape(c)}</td>" for c in row) + "</tr>" for row in rows)
         head = "<tr><th></th><th>pass</th><th>reason</th><th>settings</th></tr>"

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import time
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from typing import Any
 
 import numpy as np
@@ -12,10 +12,12 @@ from .. import _arrays, light, shadow
 from .._arrays import Floats
 from ..accel import BVH
 from ._buffers import Seen, above_horizon, g_buffer
-from ._facts import check_scene, checked_size
+from ._facts import check_scene, checked_size, outline
+from ._frequency import Coarse
 from .frames import Frame
-from .passes import Pass, Plan
+from .passes import Pass, Plan, Shading
 from .plans import decided
+from .shading import shade
 
 __all__ = ["render"]
 
@@ -81,11 +83,12 @@ def render(
 
     Notes
     -----
-    Direct light is what would arrive with nothing in between (`shadelab.light.unshadowed`: exact for diffuse
-    reflection) times the lit fraction that the plan's technique finds, plus the background's light as if nothing
-    hid it, plus emission. No light is reflected twice. Lights themselves are not seen, though
-    `shadelab.pathtrace.path_trace` shows rectangles: the plan lists those in view as left out. Where a light is wholly
-    visible the result is that of `shadelab.pathtrace.direct_light` up to the noise of glossy reflection.
+    Direct light is what would arrive with nothing in between (`shade`, by the models and methods that the plan chose
+    for each material, or by the materials themselves if it names none) times the lit fraction that the plan's technique
+    finds, plus the background's or a panorama's light as if nothing hid it, plus emission. No light is reflected twice,
+    and what passes a body ends at its far side. Lights themselves are not seen, though `shadelab.pathtrace.path_trace`
+    shows those with an area: the plan lists those in view as left out. Where a light is wholly visible the result is
+    that of `path_trace` with one bounce (`max_depth=1`) within the errors that `Plan.shading` states.
 
     Examples
     --------
@@ -100,17 +103,20 @@ def render(
     _check_plan(chosen, scene, size)
     tell = _arrays.progress_callback(progress, "render")
     clock = _Clock(len(chosen.passes), tell)
-    width, height = chosen.size
     background = np.asarray(scene.background, np.float32)
     lamps = list(scene.lights)
     arrays = scene.flatten(np.float32)
     _arrays.warn_if_coarse(arrays.positions, np.float32, 3)
     if chosen.find("g-buffer") is None:
-        return _empty_frame(chosen, background, len(lamps), clock)
+        return _empty_frame(chosen, _sky(scene, chosen.size), len(lamps), clock)
 
+    if chosen.shading and len(chosen.shading) != len(arrays.materials):
+        known, here = len(chosen.shading), len(arrays.materials)
+        raise ValueError(f"plan: made for another scene, with {known} materials instead of {here}")
     seen = g_buffer(arrays, scene.camera, chosen.size)
     clock.done("g-buffer")
     radiance = np.zeros_like(seen.points)
+    eye = np.asarray(scene.camera.eye, np.float32)
     fractions: dict[int, Floats] = {}
     chart, bvh = None, None
     for p in chosen.passes[1:]:
@@ -125,20 +131,37 @@ def render(
             fractions[index] = _lit(how, lamps[index], seen, chart, bvh)
         elif kind == "direct light":
             for i in p.settings["lights"]:
-                fraction = fractions.setdefault(i, np.ones(len(seen.points), np.float32))
-                fraction *= above_horizon(lamps[i], seen)
-                radiance += (
-                    _unshadowed(lamps[i], seen, arrays, scene.camera, p.settings["samples"], seed) * fraction[:, None]
-                )
+                if outline(lamps[i]) is not None:
+                    fraction = fractions.setdefault(i, np.ones(len(seen.points), np.float32))
+                    fraction *= above_horizon(lamps[i], seen)
+            frequency = p.settings.get("frequency", "phong")
+            if frequency == "phong":
+                lit_by = [fractions.get(i) for i in p.settings["lights"]]
+                reaching = [lamps[i] for i in p.settings["lights"]]
+                radiance += _shaded(seen, arrays, eye, reaching, lit_by, p.settings, seed, chosen.shading)
+                clock.done(p.name)
+                continue
+            coarse = Coarse(seen, arrays, eye, frequency)
+            for i in p.settings["lights"]:
+                few = _shaded(coarse.receivers, arrays, eye, [lamps[i]], [None], p.settings, seed, chosen.shading)
+                radiance += coarse.spread(few) * (fractions[i][:, None] if i in fractions else 1)
+        elif kind == "environment":
+            radiance += _shaded(seen, arrays, eye, [], [], p.settings, seed, (), scene.environment)
         elif kind == "ambient":
-            radiance += seen.base_color * background
+            shares = p.settings.get("reflectances")
+            if shares is None and "samples" in p.settings:
+                even = [light.AmbientLight(scene.background)]
+                radiance += _shaded(seen, arrays, eye, even, [None], p.settings, seed)
+            else:
+                base = (arrays.base_color if shares is None else np.asarray(shares, np.float32))[seen.material]
+                radiance += (base if seen.colors is None else base * seen.colors) * background
         elif kind == "emission":
             radiance += arrays.emission[seen.material]
         else:
             raise ValueError(f"plan: there is no pass {p.name!r}")
         clock.done(p.name)
 
-    picture = np.broadcast_to(background, (height, width, 3)).copy()
+    picture = _sky(scene, chosen.size)
     picture[seen.covered] = radiance
     forward = -np.asarray(scene.camera.view())[2].astype(np.float64)
     depth = (seen.points @ forward[:3] + forward[3]).astype(np.float32)
@@ -180,24 +203,46 @@ def _split(name: str, lamps: list[Any]) -> tuple[str, int]:
     return kind, int(last)
 
 
-def _unshadowed(lamp: Any, seen: Seen, arrays: Any, camera: Any, samples: int, seed: int) -> Floats:
-    return light.unshadowed(
-        lamp,
+def _shaded(
+    seen: Seen,
+    arrays: Any,
+    eye: Floats,
+    lamps: list[Any],
+    lit: list[Floats | None],
+    settings: Mapping[str, Any],
+    seed: int,
+    ways: tuple[Shading, ...] = (),
+    environment: Any = None,
+) -> Floats:
+    """What lights send to the eye by all that is seen, its materials by themselves or as a plan has them."""
+    return shade(
         seen.points,
         seen.shading,
-        seen.base_color,
-        arrays.metallic[seen.material],
-        arrays.roughness[seen.material],
-        eye=np.asarray(camera.eye, np.float32),
-        samples=samples,
+        [way.model for way in ways] or arrays.materials,
+        lamps,
+        eye=eye,
+        material_ids=seen.material,
+        colors=seen.colors,
+        geometric_normals=seen.geometric,
+        inside=seen.inside,
+        lit=lit,
+        environment=environment,
+        method=[way.method for way in ways] or "sampling",
+        samples=[way.samples for way in ways] or settings["samples"],
         seed=seed,
     )
 
 
-def _empty_frame(chosen: Plan, background: Floats, lights: int, clock: _Clock) -> Frame:
+def _sky(scene: Any, size: tuple[int, int]) -> Floats:
+    """The picture of what is behind everything."""
+    if scene.environment is None:
+        return np.broadcast_to(np.asarray(scene.background, np.float32), (size[1], size[0], 3)).copy()
+    return np.ascontiguousarray(scene.environment.eval(scene.camera.rays(size, dtype=np.float32)[1]), np.float32)
+
+
+def _empty_frame(chosen: Plan, picture: Floats, lights: int, clock: _Clock) -> Frame:
     width, height = chosen.size
     nothing = np.full((height, width, 3), np.nan, np.float32)
-    picture = np.broadcast_to(background, (height, width, 3)).copy()
     clock.done("background")
     return Frame(
         picture,

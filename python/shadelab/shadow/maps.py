@@ -13,12 +13,12 @@ from numpy.typing import ArrayLike, NDArray
 from .. import _arrays
 from .._arrays import Floats
 from .._kernels import shadow as _kernels
-from ..light import DirectionalLight, PointLight, RectLight
+from ..light import DirectionalLight, DiskLight, PointLight, PolygonLight, RectLight, SphereLight, SpotLight
 
 __all__ = ["ShadowMap", "shadow_map"]
 
 Cull: TypeAlias = Literal["none", "back", "front"]
-Light: TypeAlias = DirectionalLight | PointLight | RectLight
+Light: TypeAlias = DirectionalLight | PointLight | SpotLight | RectLight | DiskLight | SphereLight | PolygonLight
 _MAX_RESOLUTION = 16384
 # How far from its axis a light's map may look: 75 degrees.
 _MAX_TANGENT = math.tan(math.radians(75.0))
@@ -164,9 +164,11 @@ def shadow_map(
         Vertices of everything that casts a shadow. Their precision is the map's.
     faces : array_like of int, shape (F, 3)
         Triangles.
-    light : PointLight, RectLight or DirectionalLight
-        A point light is seen through one perspective map towards the scene's middle, a rectangular light through one
-        from its centre along its normal, a directional light through a parallel one. All are fitted to the mesh.
+    light : light of shadelab.light, but for ambient light
+        A point light and a sphere are seen through one perspective map towards the scene's middle, a spot light through
+        one along its axis, a rectangle, a disk or a polygon through one from its centre along its normal, a directional
+        light through a parallel one. All are fitted to the mesh. For `pcss` round lights and polygons are squares of
+        the same area.
     resolution : int or (int, int)
         Texels along both sides, or (width, height); at most 16384.
     receivers : array_like, shape (..., 3), optional
@@ -228,6 +230,9 @@ def shadow_map(
     used = points if cast.all() else points[cast]
     if perspective:
         window, near, far = _fit_perspective(used, points, triangles, origin, frame, looked_up, sides)
+        if isinstance(light, SpotLight) and light.outer_angle < math.pi / 2:
+            cone = math.tan(light.outer_angle)
+            window = np.clip(window, -cone, cone)
     else:
         origin, window, near, far = _fit_orthographic(used, origin, frame, looked_up)
         origin = origin.astype(points.dtype).astype(np.float64)
@@ -272,17 +277,26 @@ def _light_frame(
         frame = np.stack([right, np.cross(right, axis), axis])
         # Edges need not be square to each other: what counts is the extent along the map's sides.
         return True, np.asarray(light.center, np.float64), frame, (float(np.linalg.norm(u)), float(abs(v @ frame[1])))
+    if isinstance(light, DiskLight | PolygonLight):
+        center = light.center if isinstance(light, DiskLight) else np.mean(light.corners, 0)
+        side = math.sqrt(light.area)
+        frame = _frame_along(_unit("light", np.asarray(light.normal, np.float64)))
+        return True, np.asarray(center, np.float64), frame, (side, side)
+    if isinstance(light, SpotLight):
+        axis = _unit("light", np.asarray(light.direction, np.float64))
+        return True, np.asarray(light.position, np.float64), _frame_along(axis), (0.0, 0.0)
     seen = points if receivers is None or not receivers.size else receivers
     finite = seen[np.isfinite(seen).all(-1)].astype(np.float64)
     middle = (finite.min(0) + finite.max(0)) / 2 if len(finite) else np.zeros(3)
-    if isinstance(light, PointLight):
-        position = np.asarray(light.position, np.float64)
+    if isinstance(light, PointLight | SphereLight):
+        position = np.asarray(light.position if isinstance(light, PointLight) else light.center, np.float64)
         away = middle - position
         axis = _unit("light", away) if np.linalg.norm(away) > 0 else np.array([0.0, -1.0, 0.0])
-        return True, position, _frame_along(axis), (0.0, 0.0)
+        side = math.sqrt(math.pi) * light.radius if isinstance(light, SphereLight) else 0.0
+        return True, position, _frame_along(axis), (side, side)
     if isinstance(light, DirectionalLight):
         return False, middle, _frame_along(_unit("light", np.asarray(light.direction, np.float64))), (0.0, 0.0)
-    raise TypeError(f"light: expected a PointLight, RectLight or DirectionalLight, got {type(light).__name__}")
+    raise TypeError(f"light: expected a light that a map can look from, got {type(light).__name__}")
 
 
 def _span(

@@ -5,15 +5,25 @@ from __future__ import annotations
 from collections.abc import Callable
 
 import numpy as np
-from numpy.typing import ArrayLike
+from numpy.typing import ArrayLike, NDArray
 
 from .. import _arrays, accel
 from .._arrays import Floats
 from .._kernels import shadow as _kernels
 from ..accel import BVH
-from ..light import DirectionalLight, PointLight, RectLight
+from ..light import (
+    AmbientLight,
+    DirectionalLight,
+    DiskLight,
+    PointLight,
+    PolygonLight,
+    RectLight,
+    SphereLight,
+    SpotLight,
+)
+from ..light.kinds import Light, _table
 from ._lookup import _MAX_SAMPLES, _result
-from .maps import Light, _unit
+from .maps import _unit
 
 __all__ = ["ray_traced"]
 
@@ -40,11 +50,13 @@ def ray_traced(
         Points in the world.
     normals : array_like, shape (..., 3), or None
         Unit normals of the receivers. With them, points of the light count by the irradiance that they would send, and
-        rays start a little off the surface; without, by area, and from the receiver itself.
-    light : PointLight, RectLight or DirectionalLight
-        What rays are sent to; one ray suffices for a light without extent.
+        rays start a little off the surface; without, as they are drawn (by area; of spheres and ambient light by solid
+        angle), and from the receiver itself.
+    light : light of shadelab.light
+        What rays are sent to; one ray suffices for a light without extent. Of a spot light what stands before it
+        counts, not its cone; to ambient light rays go in all directions.
     samples : int
-        Rays to a rectangular light, at most 4096; powers of two are most even.
+        Rays to a light with an area, at most 4096; powers of two are most even.
     seed : int
         Scrambles the points of the light, for each receiver anew.
     ignore_face : array_like of int, shape (...), optional
@@ -102,20 +114,23 @@ def ray_traced(
         except ValueError:
             raise ValueError(f"ignore_face: expected shape {shape}, got {ids.shape}") from None
     zero = [0.0, 0.0, 0.0]
+    table: NDArray[np.float64] | None = None
     if isinstance(light, RectLight):
         kind, vectors = "rect", [list(map(float, v)) for v in (light.center, light.edge_u, light.edge_v)]
-    elif isinstance(light, PointLight):
+    elif isinstance(light, PointLight | SpotLight):
         kind, vectors, n = "point", [list(map(float, light.position)), zero, zero], 1
     elif isinstance(light, DirectionalLight):
         towards = -_unit("light", np.asarray(light.direction, np.float64))
         kind, vectors, n = "directional", [towards.tolist(), zero, zero], 1
+    elif isinstance(light, DiskLight | SphereLight | PolygonLight | AmbientLight):
+        kind, vectors, table = "area", [zero, zero, zero], _table("light", light)
     else:
-        raise TypeError(f"light: expected a PointLight, RectLight or DirectionalLight, got {type(light).__name__}")
+        raise TypeError(f"light: expected a light of shadelab.light, got {type(light).__name__}")
     # Points on a surface are off it by some roundings of the largest coordinate.
     reach = float(np.abs(bvh.positions).max(initial=0.0))
     offset = 32.0 * float(np.finfo(bvh.dtype).eps) * reach
     result, flat_out = _result(out, shape, bvh.dtype)
     watch = _arrays.progress_callback(progress, "shadow rays")
     normal = flat[1] if normals is not None else None
-    _kernels.ray_traced(bvh._tree, flat[0], normal, faces, (kind, vectors), n, key, offset, watch, flat_out)
+    _kernels.ray_traced(bvh._tree, flat[0], normal, faces, (kind, vectors, table), n, key, offset, watch, flat_out)
     return result

@@ -1,7 +1,8 @@
 //! Bindings of `shadow`: rays.
 
 use crate::python::accel::Tree;
-use crate::python::array::{In, Out, run};
+use crate::python::array::{In, Out, run, unknown};
+use crate::python::light::one_light;
 use crate::real;
 use crate::real::Real;
 use crate::vec::Vec3;
@@ -14,7 +15,7 @@ pub fn ray_traced(
     receivers: &Bound<'_, PyAny>,
     normals: Option<&Bound<'_, PyAny>>,
     ignore: Option<&Bound<'_, PyAny>>,
-    light: (&str, [[f64; 3]; 3]),
+    light: (&str, [[f64; 3]; 3], Option<Bound<'_, PyAny>>),
     samples: usize,
     seed: u64,
     offset: f64,
@@ -27,9 +28,10 @@ pub fn ray_traced(
         let normals = normals.map(|n| In::<T>::of("normals", n)).transpose()?;
         let ignore = ignore.map(|f| In::<i32>::of("ignore_face", f)).transpose()?;
         let mut out = Out::<T>::of("out", out)?;
-        let (kind, vectors) = light;
+        let (kind, vectors, table) = &light;
         let [a, u, v] = vectors.map(|v| Vec3::from(v.map(T::of)));
-        let emitter = match kind {
+        let emitter = match *kind {
+            "area" => Emitter::Area(one_light::<T>(table.as_ref().ok_or_else(|| unknown("light", "nothing"))?)?),
             "rect" => Emitter::Rect { center: a, u, v },
             "directional" => Emitter::Directional { towards: a },
             _ => Emitter::Point { position: a },
