@@ -3,33 +3,37 @@
 //!
 //! Between the centres of pixels radiance is bilinear; across the seam it goes round, beyond the outer rows it is
 //! constant up to the pole. Directions are drawn in proportion to the bilinear interpolation of luminance · sin θ at the
-//! pixels' centres: first the height from its marginal, a piecewise linear density, then the azimuth from the row there.
-//! So the density is that of the picture as it is looked up, but for the sine within a pixel.
+//! pixels' centres: first a row of cells between four centres, then a cell of it, each from sums in which a table of
+//! guides tells where to look, then a place in the cell. So the density is that of the picture as it is looked up, but
+//! for the sine within a pixel. Directions and angles turn into each other in lanes; pixels are read one by one.
 //!
-//! M. Pharr, W. Jakob, G. Humphreys, *Physically Based Rendering*, 3rd edition, 2016, sections 13.6.7 and 14.2.4.
+//! M. Pharr, W. Jakob, G. Humphreys, *Physically Based Rendering*, 3rd edition, 2016, sections 13.6.7 and 14.2.4;
+//! H.-C. Chen, Y. Asau, *On generating random variates from an empirical distribution*, 1974 (the guides).
 
 use crate::color::luminance::luminance;
 use crate::dispatch;
 use crate::math;
 use crate::parallel::{self, Interrupted, Watch};
 use crate::real::{Lanes, Real};
+use crate::simd::{Simd, SimdBase};
 use crate::vec::Vec3;
 
 pub struct Panorama<T> {
     width: usize,
     height: usize,
-    radiance: Vec<[T; 3]>,
-    /// Luminance · sin θ at the pixels' centres.
-    weights: Vec<T>,
-    /// For each row the integral of its weights from column 0's centre to that of column j, j = 0 … width.
-    along: Vec<T>,
-    /// The integral of rows from the top to the first, second … centre and to the bottom.
-    down: Vec<T>,
+    /// Red, green, blue; luminance · sin θ, scaled so that over sin θ it is the density.
+    pixels: Vec<[T; 4]>,
+    /// Of the rows of cells: half a row above the first centres, between two, half a row below the last.
+    down: Guided<T>,
+    /// Of the cells of each of these.
+    along: Guided<T>,
+    /// ∫ luminance dω.
+    power: T,
     /// Sine and cosine of the turn about y from the panorama to the world.
     turn: (T, T),
 }
 
-/// A direction drawn from a panorama.
+/// A direction drawn from a panorama, or lanes of them.
 #[derive(Clone, Copy, Debug)]
 pub struct Draw<T> {
     /// Unit, to where the light comes from.
@@ -37,6 +41,69 @@ pub struct Draw<T> {
     pub radiance: Vec3<T>,
     /// Per solid angle.
     pub pdf: T,
+}
+
+/// Lines of shares of one, summed up, with guides: where the search for a number starts and ends.
+struct Guided<T> {
+    /// Shares of each line.
+    count: usize,
+    /// Sums, count + 1 a line.
+    sums: Vec<T>,
+    /// For each of `count` equal parts of [0, 1] the share in which it begins, and that in which the last one ends.
+    guides: Vec<u32>,
+}
+
+impl<T: Real> Guided<T> {
+    fn new(count: usize) -> Self {
+        Guided { count, sums: Vec::new(), guides: Vec::new() }
+    }
+
+    /// Adds a line in proportion to weights; an even one if there are none.
+    fn push(&mut self, weights: &[f64]) {
+        let (n, start) = (self.count, self.sums.len());
+        let total: f64 = weights.iter().sum();
+        let share = |w: f64| if total > 0.0 { w / total } else { 1.0 / n as f64 };
+        let mut sum = 0.0;
+        for &w in weights {
+            self.sums.push(T::of(f64::min(sum, 1.0)));
+            sum += share(w);
+        }
+        self.sums.push(T::one());
+        let (sums, mut k) = (&self.sums[start..], 0);
+        for part in 0..=n {
+            // A little before, since u · n is rounded.
+            let edge = (part as f64 - 0.01 - n as f64 * T::EPSILON.to_f64()) / n as f64;
+            while k + 1 < n && sums[k + 1].to_f64() <= edge {
+                k += 1;
+            }
+            self.guides.push(k as u32);
+        }
+    }
+
+    /// The share of a line at `u` in [0, 1], and where in it.
+    #[inline(always)]
+    fn find(&self, line: usize, u: T) -> (usize, T) {
+        let n = self.count;
+        let sums = &self.sums[line * (n + 1)..][..n + 1];
+        let part = ((u * T::of(n as f64)).to_f64() as usize).min(n - 1);
+        let guides = &self.guides[line * (n + 1) + part..][..2];
+        let (mut low, mut high) = (guides[0] as usize, guides[1] as usize + 1);
+        // Guides stand a little before the parts.
+        if sums[high] <= u {
+            high = n;
+        }
+        while high - low > 1 {
+            let middle = (low + high) / 2;
+            if sums[middle] <= u {
+                low = middle;
+            } else {
+                high = middle;
+            }
+        }
+        let (start, end) = (sums[low], sums[low + 1]);
+        let rest = (u - start) / (end - start);
+        (low, Lanes::min(Lanes::max(rest, T::zero()), T::one()))
+    }
 }
 
 /// The four pixels about a place, and how far it is from the first to the last along the row and down.
@@ -47,36 +114,12 @@ struct Cell<T> {
     t: T,
 }
 
-impl<T: Real> Cell<T> {
-    #[inline(always)]
-    fn mix(&self, value: impl Fn(usize) -> T) -> T {
-        let [a, b, c, d] = self.at.map(value);
-        let (s, t) = (self.s, self.t);
-        let (top, bottom) = (a + (b - a) * s, c + (d - c) * s);
-        top + (bottom - top) * t
-    }
-}
-
-/// Where the integral of the line from `a` at 0 to `b` at 1 reaches `area`.
+/// Where the integral of the line from `a` at 0 to `b` at 1 reaches the part `x` of the whole.
 #[inline(always)]
-fn reach<T: Real>(a: T, b: T, area: T) -> T {
-    let root = Lanes::max(a * a + T::of(2.0) * (b - a) * area, T::zero()).sqrt();
-    Lanes::min((area + area) / (a + root), T::one())
-}
-
-/// The last of increasing `sums(0 … n)` that does not exceed `x`, short of the end.
-#[inline(always)]
-fn last_below<T: Real>(n: usize, x: T, sums: impl Fn(usize) -> T) -> usize {
-    let (mut low, mut high) = (0, n);
-    while high - low > 1 {
-        let middle = (low + high) / 2;
-        if sums(middle) <= x {
-            low = middle;
-        } else {
-            high = middle;
-        }
-    }
-    low
+fn reach<T: Real>(a: T, b: T, x: T) -> T {
+    let area = x * (a + b);
+    let root = Lanes::max(a * a + (b - a) * area, T::zero()).sqrt();
+    Lanes::min(area / (a + root), T::one())
 }
 
 impl<T: Real> Panorama<T> {
@@ -84,131 +127,185 @@ impl<T: Real> Panorama<T> {
     pub fn new(width: usize, height: usize, radiance: Vec<[T; 3]>, angle: f64) -> Self {
         let bright = |p: &[T; 3]| luminance(Vec3::from(p.map(T::to_f64)));
         let black = radiance.iter().all(|p| bright(p) == 0.0);
-        let (mut weights, mut along, mut down) = (Vec::new(), Vec::new(), vec![T::zero()]);
-        let (mut sum, mut before) = (0.0, 0.0);
+        let mut weights = Vec::with_capacity(radiance.len());
         for (i, row) in radiance.chunks_exact(width).enumerate() {
             let sine = math::sin(std::f64::consts::PI * (i as f64 + 0.5) / height as f64);
-            let row: Vec<f64> = row.iter().map(|p| if black { sine } else { sine * bright(p) }).collect();
-            let mut total = 0.0;
-            for j in 0..=width {
-                along.push(T::of(total));
-                total += 0.5 * (row[j % width] + row[(j + 1) % width]);
-            }
-            let whole: f64 = row.iter().sum();
-            weights.extend(row.iter().map(|&w| T::of(w)));
-            sum += 0.5 * (before + whole);
-            down.push(T::of(sum));
-            before = whole;
+            weights.extend(row.iter().map(|p| if black { sine } else { sine * bright(p) }));
         }
-        // Up to the first centre half a row of the first, likewise below the last.
-        down.push(T::of(sum + 0.5 * before));
+        let total: f64 = weights.iter().sum();
+        let area = 2.0 * std::f64::consts::PI * std::f64::consts::PI / weights.len() as f64;
+        let scale = 1.0 / (total * area);
+        let pixels = radiance.iter().zip(&weights).map(|(&[r, g, b], w)| [r, g, b, T::of(w * scale)]);
+        let pixels = pixels.collect();
+
+        let (mut down, mut along) = (Guided::new(height + 1), Guided::new(width));
+        let (mut rows, mut cells) = (Vec::with_capacity(height + 1), vec![0.0; width]);
+        for k in 0..=height {
+            let ends = [k.max(1) - 1, k.min(height - 1)];
+            let [above, below] = ends.map(|i| &weights[i * width..][..width]);
+            for j in 0..width {
+                let next = (j + 1) % width;
+                cells[j] = above[j] + above[next] + below[j] + below[next];
+            }
+            along.push(&cells);
+            let half = if k == 0 || k == height { 0.5 } else { 1.0 };
+            rows.push(half * cells.iter().sum::<f64>());
+        }
+        down.push(&rows);
         let (sin, cos) = math::sin_cos(angle);
-        Panorama { width, height, radiance, weights, along, down, turn: (T::of(sin), T::of(cos)) }
+        let turn = (T::of(sin), T::of(cos));
+        Panorama { width, height, pixels, down, along, power: T::of(total * area), turn }
     }
 
     /// ∫ luminance dω over all directions.
     pub fn power(&self) -> T {
-        let pixels = T::of((self.width * self.height) as f64);
-        *self.down.last().expect("sums are never empty") * T::of(2.0) * T::PI * T::PI / pixels
+        self.power
     }
 
+    /// The column of a unit direction, from one before the first pixel's centre, its row, from the first centre, and
+    /// sin θ.
     #[inline(always)]
-    fn to_world(&self, v: Vec3<T>) -> Vec3<T> {
-        let (sin, cos) = self.turn;
-        Vec3::new(cos * v.x + sin * v.z, v.y, cos * v.z - sin * v.x)
-    }
-
-    /// The cell at a unit direction, and sin θ.
-    #[inline(always)]
-    fn cell(&self, wi: Vec3<T>) -> (Cell<T>, T) {
-        let (half, (sin, cos)) = (T::of(0.5), self.turn);
+    fn place<V: Lanes<Elem = T>>(&self, wi: Vec3<V>) -> (V, V, V) {
+        let x = wi.x;
+        let (sin, cos) = (x.like(self.turn.0), x.like(self.turn.1));
         let (x, y, z) = (cos * wi.x - sin * wi.z, wi.y, sin * wi.x + cos * wi.z);
         let sine = (x * x + z * z).sqrt();
-        let (w, h) = (T::of(self.width as f64), T::of(self.height as f64));
-        // Columns and rows from the first centre.
-        let column = (half + math::atan2(x, -z) / (T::of(2.0) * T::PI)) * w - half;
-        let row = math::atan2(sine, y) / T::PI * h - half;
-        let row = Lanes::min(Lanes::max(row, T::zero()), h - T::one());
-        let (j, i) = (column.floor(), row.floor());
-        let (s, t) = (column - j, row - i);
-        // From −1 to width − 1, by rounding to width; NaN becomes 0.
-        let j = (j.to_f64() as isize + self.width as isize) as usize % self.width;
-        let i = (i.to_f64() as usize).min(self.height - 1);
-        let (k, l) = ((j + 1) % self.width, (i + 1).min(self.height - 1));
-        let (i, l) = (i * self.width, l * self.width);
-        (Cell { at: [i + j, i + k, l + j, l + k], s, t }, Lanes::max(sine, T::EPSILON))
+        let (w, h) = (self.width as f64, self.height as f64);
+        let pi = std::f64::consts::PI;
+        let column = math::atan2(x, -z) * x.num(w / (2.0 * pi)) + x.num(0.5 * w + 0.5);
+        let row = math::atan2(sine, y) * x.num(h / pi) - x.num(0.5);
+        (column, row, sine.max(x.like(T::EPSILON)))
+    }
+
+    /// The cell at such a column and row.
+    #[inline(always)]
+    fn cell(&self, column: T, row: T) -> Cell<T> {
+        let row = Lanes::min(Lanes::max(row, T::zero()), T::of(self.height as f64 - 1.0));
+        let column = Lanes::max(column, T::zero());
+        // Column 0 is the last one; by rounding it may be the width and one more. NaN became 0.
+        let (i, j) = (row.to_f64() as usize, column.to_f64() as usize);
+        let (s, t) = (column - T::of(j as f64), row - T::of(i as f64));
+        let (w, last) = (self.width, self.height - 1);
+        let j = if j == 0 { w - 1 } else { j - 1 };
+        let j = if j >= w { j - w } else { j };
+        self.about(i.min(last), (i + 1).min(last), j, s, t)
     }
 
     #[inline(always)]
-    fn radiance_of(&self, cell: &Cell<T>) -> Vec3<T> {
-        Vec3::from([0, 1, 2].map(|c| cell.mix(|at| self.radiance[at][c])))
+    fn about(&self, above: usize, below: usize, j: usize, s: T, t: T) -> Cell<T> {
+        let w = self.width;
+        let next = if j + 1 == w { 0 } else { j + 1 };
+        let (above, below) = (above * w, below * w);
+        Cell { at: [above + j, above + next, below + j, below + next], s, t }
     }
 
+    /// Radiance, and density times sin θ.
     #[inline(always)]
-    fn pdf_of(&self, cell: &Cell<T>, sine: T) -> T {
-        cell.mix(|at| self.weights[at]) / (self.power() * sine)
+    fn mix(&self, cell: &Cell<T>) -> [T; 4] {
+        let [a, b, c, d] = cell.at;
+        let (a, b, c, d) = (&self.pixels[a], &self.pixels[b], &self.pixels[c], &self.pixels[d]);
+        let mut out = [T::zero(); 4];
+        for m in 0..4 {
+            let (top, bottom) = (a[m] + (b[m] - a[m]) * cell.s, c[m] + (d[m] - c[m]) * cell.s);
+            out[m] = top + (bottom - top) * cell.t;
+        }
+        out
     }
 
-    /// Radiance from a unit direction.
+    /// A cell for a point of the unit square, its column from the picture's left edge, and its row from the top.
     #[inline(always)]
-    pub fn eval(&self, wi: Vec3<T>) -> Vec3<T> {
-        self.radiance_of(&self.cell(wi).0)
+    fn pick(&self, u: [T; 2]) -> (Cell<T>, T, T) {
+        let (h, half, one) = (self.height, T::of(0.5), T::one());
+        let (k, x) = self.down.find(0, u[1]);
+        let (j, y) = self.along.find(k, u[0]);
+        let mut cell = self.about(k.max(1) - 1, k.min(h - 1), j, T::zero(), T::zero());
+        let [a, b, c, d] = cell.at;
+        let [a, b, c, d] = [self.pixels[a][3], self.pixels[b][3], self.pixels[c][3], self.pixels[d][3]];
+        // Half rows are constant from top to bottom.
+        let edge = k == 0 || k == h;
+        cell.t = if edge { x } else { reach(a + b, c + d, x) };
+        cell.s = reach(a + (c - a) * cell.t, b + (d - b) * cell.t, y);
+        let row = match k {
+            0 => cell.t * half,
+            _ if k == h => T::of(h as f64) - (one - cell.t) * half,
+            _ => T::of(k as f64) - half + cell.t,
+        };
+        (cell, T::of(j as f64) + half + cell.s, row)
     }
 
-    /// The density of [`Panorama::sample`] per solid angle.
+    /// The direction at a column from the left edge and a row from the top, and sin θ.
     #[inline(always)]
-    pub fn pdf(&self, wi: Vec3<T>) -> T {
-        let (cell, sine) = self.cell(wi);
-        self.pdf_of(&cell, sine)
+    fn toward<V: Lanes<Elem = T>>(&self, column: V, row: V) -> (Vec3<V>, V) {
+        let (w, h) = (self.width as f64, self.height as f64);
+        let pi = std::f64::consts::PI;
+        let (sine, y) = math::sin_cos(row * row.num(pi / h));
+        let (a, b) = math::sin_cos((column - row.num(0.5 * w)) * row.num(2.0 * pi / w));
+        let (x, z) = (sine * a, -(sine * b));
+        let (sin, cos) = (row.like(self.turn.0), row.like(self.turn.1));
+        (Vec3::new(cos * x + sin * z, y, cos * z - sin * x), sine.max(row.like(T::EPSILON)))
     }
 
-    /// Radiance and density at once.
+    /// Radiance from a unit direction, and the density of [`Panorama::sample`] per solid angle.
     #[inline(always)]
     pub fn eval_and_pdf(&self, wi: Vec3<T>) -> (Vec3<T>, T) {
-        let (cell, sine) = self.cell(wi);
-        (self.radiance_of(&cell), self.pdf_of(&cell, sine))
+        let (column, row, sine) = self.place(wi);
+        let [r, g, b, weight] = self.mix(&self.cell(column, row));
+        (Vec3::new(r, g, b), weight / sine)
+    }
+
+    /// [`Panorama::eval_and_pdf`] of eight directions.
+    #[inline(always)]
+    pub fn look<S: Simd>(&self, s: S, wi: Vec3<T::V8<S>>) -> (Vec3<T::V8<S>>, T::V8<S>) {
+        let (column, row, sine) = self.place(wi);
+        let (columns, rows) = (column.to_array(), row.to_array());
+        let mut out = [[T::zero(); 8]; 4];
+        for l in 0..8 {
+            let mixed = self.mix(&self.cell(columns[l], rows[l]));
+            for m in 0..4 {
+                out[m][l] = mixed[m];
+            }
+        }
+        let [r, g, b, weight] = load4::<T, S>(s, &out);
+        (Vec3::new(r, g, b), weight / sine)
     }
 
     /// A direction for a point of the unit square: u[0] goes along rows, u[1] down.
     #[inline(always)]
     pub fn sample(&self, u: [T; 2]) -> Draw<T> {
-        let (w, h, half, one) = (self.width, self.height, T::of(0.5), T::one());
-        // The span between the centres of rows `k − 1` and `k`; half a span at the poles.
-        let goal = u[1] * self.down[h + 1];
-        let k = last_below(h + 1, goal, |k| self.down[k]);
-        let (above, below) = (k.max(1) - 1, k.min(h - 1));
-        let ends = [above, below].map(|i| &self.along[i * (w + 1)..][..=w]);
-        let of_rows = ends.map(|row| row[w]);
-        let rest = goal - self.down[k];
-        let (t, row) = if k == 0 || k == h {
-            let t = Lanes::min(rest / (half * of_rows[0]), one);
-            (t, if k == 0 { t * half } else { T::of(h as f64) - (one - t) * half })
-        } else {
-            let t = reach(of_rows[0], of_rows[1], rest);
-            (t, T::of(k as f64) - half + t)
-        };
-
-        let sums = |j: usize| ends[0][j] + (ends[1][j] - ends[0][j]) * t;
-        let goal = u[0] * sums(w);
-        let j = last_below(w, goal, sums);
-        let weight = |j: usize| {
-            let [a, b] = [above, below].map(|i| self.weights[i * w + j % w]);
-            a + (b - a) * t
-        };
-        let s = reach(weight(j), weight(j + 1), goal - sums(j));
-        let cell = Cell {
-            at: [above * w + j, above * w + (j + 1) % w, below * w + j, below * w + (j + 1) % w],
-            s,
-            t,
-        };
-
-        let azimuth = T::of(2.0) * T::PI * ((T::of(j as f64) + half + s) / T::of(w as f64) - half);
-        let ((sine, y), (sin, cos)) =
-            (math::sin_cos(T::PI * (row / T::of(h as f64))), math::sin_cos(azimuth));
-        let wi = self.to_world(Vec3::new(sine * sin, y, -sine * cos));
-        let sine = Lanes::max(sine, T::EPSILON);
-        Draw { wi, radiance: self.radiance_of(&cell), pdf: self.pdf_of(&cell, sine) }
+        let (cell, column, row) = self.pick(u);
+        let (wi, sine) = self.toward(column, row);
+        let [r, g, b, weight] = self.mix(&cell);
+        Draw { wi, radiance: Vec3::new(r, g, b), pdf: weight / sine }
     }
+
+    /// [`Panorama::sample`] of eight points.
+    #[inline(always)]
+    pub fn samples<S: Simd>(&self, s: S, u: &[[T; 8]; 2]) -> Draw<T::V8<S>> {
+        let (mut columns, mut rows) = ([T::zero(); 8], [T::zero(); 8]);
+        let mut out = [[T::zero(); 8]; 4];
+        for l in 0..8 {
+            let (cell, column, row) = self.pick([u[0][l], u[1][l]]);
+            (columns[l], rows[l]) = (column, row);
+            let mixed = self.mix(&cell);
+            for m in 0..4 {
+                out[m][l] = mixed[m];
+            }
+        }
+        let (column, row) = (SimdBase::load_array_ref(s, &columns), SimdBase::load_array_ref(s, &rows));
+        let (wi, sine) = self.toward::<T::V8<S>>(column, row);
+        let [r, g, b, weight] = load4::<T, S>(s, &out);
+        Draw { wi, radiance: Vec3::new(r, g, b), pdf: weight / sine }
+    }
+}
+
+#[inline(always)]
+fn load4<T: Real, S: Simd>(s: S, x: &[[T; 8]; 4]) -> [T::V8<S>; 4] {
+    [
+        SimdBase::load_array_ref(s, &x[0]),
+        SimdBase::load_array_ref(s, &x[1]),
+        SimdBase::load_array_ref(s, &x[2]),
+        SimdBase::load_array_ref(s, &x[3]),
+    ]
 }
 
 /// Radiance and density of unit directions, over arrays of equal length.
@@ -219,16 +316,46 @@ pub fn panorama_many<T: Real>(
     radiance: &mut [[T; 3]],
     pdf: &mut [T],
 ) -> Result<(), Interrupted> {
-    parallel::for_each(watch, (directions, radiance, pdf), 1 << 12, |_, (directions, radiance, pdf)| {
-        dispatch!(_s => {
-            for i in 0..directions.len() {
-                let wi = Vec3::from(directions[i]);
-                let (color, density) = panorama.eval_and_pdf(wi);
-                let nan = wi.dot(Vec3::splat(T::zero()));
-                (radiance[i], pdf[i]) = (color.map(|c| c + nan).to_array(), density + nan);
+    parallel::for_each(
+        watch,
+        (directions, radiance, pdf),
+        1 << 12,
+        |_, (directions, radiance, pdf)| dispatch!(s => eval_body(s, panorama, directions, radiance, pdf)),
+    )
+}
+
+#[inline(always)]
+fn eval_body<T: Real, S: Simd>(
+    s: S,
+    panorama: &Panorama<T>,
+    directions: &[[T; 3]],
+    radiance: &mut [[T; 3]],
+    pdf: &mut [T],
+) {
+    let mut at = [[T::zero(); 8]; 3];
+    let mut start = 0;
+    while start < directions.len() {
+        let n = (directions.len() - start).min(8);
+        for l in 0..n {
+            for c in 0..3 {
+                at[c][l] = directions[start + l][c];
             }
-        })
-    })
+        }
+        let wi = Vec3::new(
+            SimdBase::load_array_ref(s, &at[0]),
+            SimdBase::load_array_ref(s, &at[1]),
+            SimdBase::load_array_ref(s, &at[2]),
+        );
+        let (color, density) = panorama.look::<S>(s, wi);
+        let zero = wi.x.num(0.0);
+        let nan = wi.x * zero + wi.y * zero + wi.z * zero;
+        let (r, g, b) = ((color.x + nan).to_array(), (color.y + nan).to_array(), (color.z + nan).to_array());
+        let density = (density + nan).to_array();
+        for l in 0..n {
+            (radiance[start + l], pdf[start + l]) = ([r[l], g[l], b[l]], density[l]);
+        }
+        start += n;
+    }
 }
 
 /// [`Panorama::sample`] over arrays of equal length; NaN outside the unit square.
@@ -240,15 +367,47 @@ pub fn panorama_sample_many<T: Real>(
     radiance: &mut [[T; 3]],
     pdf: &mut [T],
 ) -> Result<(), Interrupted> {
-    parallel::for_each(watch, (u, wi, radiance, pdf), 1 << 12, |_, (u, wi, radiance, pdf)| {
-        dispatch!(_s => {
-            for i in 0..u.len() {
-                let inside = u[i].iter().all(|x| (T::zero()..=T::one()).contains(x));
-                let draw = panorama.sample(u[i]);
-                let nan = if inside { T::zero() } else { T::NAN };
-                let marked = |v: Vec3<T>| v.map(|x| x + nan).to_array();
-                (wi[i], radiance[i], pdf[i]) = (marked(draw.wi), marked(draw.radiance), draw.pdf + nan);
+    parallel::for_each(
+        watch,
+        (u, wi, radiance, pdf),
+        1 << 12,
+        |_, (u, wi, radiance, pdf)| dispatch!(s => sample_body(s, panorama, u, wi, radiance, pdf)),
+    )
+}
+
+#[inline(always)]
+fn sample_body<T: Real, S: Simd>(
+    s: S,
+    panorama: &Panorama<T>,
+    u: &[[T; 2]],
+    wi: &mut [[T; 3]],
+    radiance: &mut [[T; 3]],
+    pdf: &mut [T],
+) {
+    let (zero, one) = (T::zero(), T::one());
+    let mut start = 0;
+    while start < u.len() {
+        let n = (u.len() - start).min(8);
+        let (mut at, mut nan) = ([[zero; 8]; 2], [zero; 8]);
+        for l in 0..n {
+            let [x, y] = u[start + l];
+            let inside = (x >= zero) & (x <= one) & (y >= zero) & (y <= one);
+            if inside {
+                (at[0][l], at[1][l]) = (x, y);
+            } else {
+                nan[l] = T::NAN;
             }
-        })
-    })
+        }
+        let draw = panorama.samples::<S>(s, &at);
+        let (x, y, z) = (draw.wi.x.to_array(), draw.wi.y.to_array(), draw.wi.z.to_array());
+        let light = draw.radiance;
+        let (r, g, b) = (light.x.to_array(), light.y.to_array(), light.z.to_array());
+        let density = draw.pdf.to_array();
+        for l in 0..n {
+            wi[start + l] = [x[l] + nan[l], y[l] + nan[l], z[l] + nan[l]];
+            radiance[start + l] = [r[l] + nan[l], g[l] + nan[l], b[l] + nan[l]];
+            pdf[start + l] = density[l] + nan[l];
+        }
+        start += n;
+    }
 }

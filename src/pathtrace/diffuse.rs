@@ -4,6 +4,7 @@
 
 use super::lighting::weight;
 use super::path_trace::Strategy;
+use super::sky::CANDIDATES;
 use super::surface::{Facing, between};
 use super::wave::{Path, Tracer, Wave, purpose, uniform_hemisphere};
 use crate::accel::Ray;
@@ -19,7 +20,7 @@ use crate::vec::Vec3;
 type Columns<T> = [[T; 8]; 3];
 
 #[inline(always)]
-fn load<T: Real, S: Simd>(s: S, x: &[T; 8]) -> T::V8<S> {
+pub fn load<T: Real, S: Simd>(s: S, x: &[T; 8]) -> T::V8<S> {
     SimdBase::load_array_ref(s, x)
 }
 
@@ -40,7 +41,7 @@ fn columns<T: Real>(of: impl Fn(usize) -> [T; 3]) -> Columns<T> {
 }
 
 #[inline(always)]
-fn gather<T: Real, S: Simd>(s: S, of: impl Fn(usize) -> [T; 3]) -> Vec3<T::V8<S>> {
+pub fn gather<T: Real, S: Simd>(s: S, of: impl Fn(usize) -> [T; 3]) -> Vec3<T::V8<S>> {
     load3(s, &columns(of))
 }
 
@@ -74,31 +75,31 @@ fn row<T: Copy>(c: &Columns<T>, l: usize) -> [T; 3] {
 }
 
 /// Eight surfaces.
-struct Group<V> {
+pub struct Group<V> {
     point: Vec3<V>,
-    normal: Vec3<V>,
-    frame: Frame<V>,
+    pub normal: Vec3<V>,
+    pub frame: Frame<V>,
     albedo: Vec3<V>,
     /// What the paths carry to here.
     carried: Vec3<V>,
     scale: V,
     /// Where rays start, off the surface.
     start: Vec3<V>,
-    keys: [u32; 8],
-    samples: [u32; 8],
+    pub keys: [u32; 8],
+    pub samples: [u32; 8],
     slots: [u32; 8],
     /// Lanes that hold a surface, as bits.
     full: u32,
 }
 
 /// Light that arrives at eight surfaces.
-struct Arrivals<V> {
-    wi: Vec3<V>,
-    distance: V,
-    value: Vec3<V>,
-    pdf: V,
+pub struct Arrivals<V> {
+    pub wi: Vec3<V>,
+    pub distance: V,
+    pub value: Vec3<V>,
+    pub pdf: V,
     /// Lanes to which light comes, as bits.
-    seen: u32,
+    pub seen: u32,
 }
 
 /// Asks lights at all surfaces of the queue, and lets paths go on.
@@ -192,9 +193,9 @@ fn ask_lights<T: Real, S: Simd>(
         let pair = tracer.draws.pairs::<T>(&group.keys, &group.samples, tracer.pair(depth, purpose::SOURCE));
         pick = pair[1];
         if !all {
-            let from = store::<T, S>(group.start);
+            let (from, normal) = (store::<T, S>(group.start), store::<T, S>(group.frame.z));
             for l in 0..8 {
-                match lighting.draw(row(&from, l).into(), pair[0][l]) {
+                match lighting.draw(row(&from, l).into(), row(&normal, l).into(), pair[0][l]) {
                     Some(drawn) => (sources[l], chances[l]) = drawn,
                     None => asked &= !(1 << l),
                 }
@@ -207,8 +208,7 @@ fn ask_lights<T: Real, S: Simd>(
             sources = [k; 8];
         }
         let pair = tracer.pair(depth, purpose::LIGHT + k as u32);
-        let u = tracer.draws.pairs::<T>(&group.keys, &group.samples, pair);
-        let mut light = arrivals(s, tracer, group, &sources, &pick, &u);
+        let mut light = arrivals(s, tracer, group, &sources, &pick, pair, &chances);
         light.seen &= asked;
         cast::<T, S>(tracer, wave, group, &light, load(s, &chances));
     }
@@ -222,11 +222,23 @@ fn arrivals<T: Real, S: Simd>(
     group: &Group<T::V8<S>>,
     sources: &[usize; 8],
     pick: &[T; 8],
-    u: &[[T; 8]; 2],
+    pair: u32,
+    chances: &[T; 8],
 ) -> Arrivals<T::V8<S>> {
     let scene = tracer.scene;
+    let mut alike = true;
+    for l in 1..8 {
+        alike &= sources[l] == sources[0];
+    }
+    if let Some(sky) = scene.environment
+        && alike
+        && sources[0] == tracer.lighting.sky()
+    {
+        return tracer.ask_sky(s, sky, group, pair, pick, load::<T, S>(s, chances));
+    }
+    let u = tracer.draws.pairs::<T>(&group.keys, &group.samples, pair);
     if let Some(Light::Rect(rect)) = scene.lights.get(sources[0])
-        && sources.iter().all(|&k| k == sources[0])
+        && alike
     {
         return of_rect(rect, group, load::<T, S>(s, &u[0]), load::<T, S>(s, &u[1]));
     }
@@ -242,6 +254,10 @@ fn arrivals<T: Real, S: Simd>(
             && let Some(light) = light
         {
             (out[l], seen) = (light, seen | 1 << l);
+            if scene.environment.is_some() && sources[l] == tracer.lighting.sky() {
+                // Weighed as one of several, though it is the only one.
+                out[l].pdf *= T::of(f64::from(CANDIDATES));
+            }
         }
     }
     let (mut distance, mut pdf) = ([zero; 8], [zero; 8]);
@@ -365,13 +381,15 @@ fn go_on<T: Real, S: Simd>(
     }
     let mut rays = T::V8::<S>::bits(alive) & group.full;
     let (carried, out) = (store::<T, S>(carried), store::<T, S>(out));
+    let normal = store::<T, S>(group.frame.z);
     let (start, pdf, scale) = (store::<T, S>(group.start), pdf.to_array(), group.scale.to_array());
     while rays != 0 {
         let l = rays.trailing_zeros() as usize & 7;
         rays &= rays - 1;
         wave.next_rays.push(Ray::new(row(&start, l), row(&out, l)));
         let carried = row(&carried, l).into();
-        wave.next_paths.push(Path { slot: group.slots[l], carried, pdf: pdf[l], scale: scale[l] });
+        let normal = row(&normal, l).into();
+        wave.next_paths.push(Path { slot: group.slots[l], carried, pdf: pdf[l], scale: scale[l], normal });
     }
 }
 

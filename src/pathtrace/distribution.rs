@@ -100,9 +100,14 @@ impl<T: Real> Tracer<T> for Distribution<'_, T> {
                 return sum + carried.times(radiance);
             }
             let Some(site) = stage.scene.at(&hit, ray.direction.into()) else { return sum };
-            if let Some((emission, other)) =
-                stage.scene.glow(stage.lighting, hit.face as usize, &ray, hit.t, depth)
-            {
+            if let Some((emission, other)) = stage.scene.glow(
+                stage.lighting,
+                hit.face as usize,
+                &ray,
+                Vec3::splat(T::zero()),
+                hit.t,
+                depth,
+            ) {
                 sum = sum + carried.times(emission) * weight(pdf, other);
             }
             let (base, last) =

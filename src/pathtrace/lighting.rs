@@ -37,6 +37,7 @@ pub struct Lighting<T> {
     lights: usize,
     faces: usize,
     count: usize,
+    sky: bool,
 }
 
 impl<T: Real> Lighting<T> {
@@ -79,6 +80,7 @@ impl<T: Real> Lighting<T> {
             lights: scene.lights.len(),
             faces,
             count: sources.len(),
+            sky: scene.environment.is_some(),
         }
     }
 
@@ -98,22 +100,27 @@ impl<T: Real> Lighting<T> {
         if self.all[0] || self.all[1] { self.count as u32 } else { 1 }
     }
 
-    /// Whether a random number is needed to choose a source, or one of its faces.
+    /// Whether a random number is needed to choose a source, one of its faces, or one of several directions.
     #[inline(always)]
     pub fn chooses(&self, depth: u32) -> bool {
-        !self.asks_all(depth) || self.faces > 0
+        !self.asks_all(depth) || self.faces > 0 || self.sky
     }
 
     /// How many times a source is asked from where a path left a surface, on average.
+    ///
+    /// `normal` is the shading one; zero where light may come from both sides.
     #[inline(always)]
-    pub fn chance(&self, source: usize, from: Vec3<T>, depth: u32) -> T {
-        if self.asks_all(depth) { T::one() } else { self.chooser.chance(from, None, source) }
+    pub fn chance(&self, source: usize, from: Vec3<T>, normal: Vec3<T>, depth: u32) -> T {
+        if self.asks_all(depth) { T::one() } else { self.chooser.chance(from, side(normal), source) }
     }
 
     /// The source at `u` in [0, 1), and its chance; none if none may shine here.
     #[inline(always)]
-    pub fn draw(&self, from: Vec3<T>, u: T) -> Option<(usize, T)> {
-        self.chooser.draw(from, None, u).map(|choice| (choice.light, choice.chance))
+    pub fn draw(&self, from: Vec3<T>, normal: Vec3<T>, u: T) -> Option<(usize, T)> {
+        match self.chooser.draw(from, side(normal), u) {
+            Some(choice) => Some((choice.light, choice.chance)),
+            None => None,
+        }
     }
 
     /// The source that a face belongs to.
@@ -201,6 +208,7 @@ impl<T: Real> Surfaces<'_, T> {
         lighting: &Lighting<T>,
         face: usize,
         ray: &Ray<T>,
+        normal: Vec3<T>,
         distance: T,
         depth: u32,
     ) -> Option<(Vec3<T>, T)> {
@@ -214,7 +222,7 @@ impl<T: Real> Surfaces<'_, T> {
             return None;
         }
         let source = lighting.of_face(self.emitters, face);
-        let chance = lighting.chance(source, ray.origin.into(), depth);
+        let chance = lighting.chance(source, ray.origin.into(), normal, depth);
         Some((emission.into(), self.face_pdf(lighting, face, cos_light, distance) * chance))
     }
 
@@ -231,6 +239,12 @@ impl<T: Real> Surfaces<'_, T> {
         }
         nearest.1
     }
+}
+
+/// The side from which light comes, if it comes from one.
+#[inline(always)]
+fn side<T: Real>(normal: Vec3<T>) -> Option<Vec3<T>> {
+    if normal == Vec3::splat(T::zero()) { None } else { Some(normal) }
 }
 
 /// The weight of the strategy whose density is `own`, against the `other`'s (power heuristic).

@@ -25,6 +25,7 @@ pub mod path_trace;
 pub mod ray_cast;
 #[cfg_attr(not(feature = "python"), allow(dead_code))] // asked for by Python alone
 pub(crate) mod recursion;
+mod sky;
 mod surface;
 mod wave;
 #[cfg_attr(not(feature = "python"), allow(dead_code))] // asked for by Python alone

@@ -251,7 +251,9 @@ fn tile<T: Real, S: Simd>(
             tracer.trace(s, &mut wave);
             for (&[x, y], sums) in some.iter().zip(wave.sums.chunks(count as usize)) {
                 let tally = &mut tallies[y as usize * side[0] + x as usize];
-                sums.iter().for_each(|&sum| tally.add_clamped(sum, options.clamp));
+                for &sum in sums {
+                    tally.add_clamped(sum, options.clamp);
+                }
             }
         }
     }

@@ -2,6 +2,7 @@
 //! shadows; how samples of a pixel become its tally.
 
 use super::camera::Camera;
+use super::draws::Draws;
 use super::film::Tally;
 use super::filter::Filter;
 use super::lighting::{Lighting, weight};
@@ -12,7 +13,7 @@ use crate::brdf::metallic_roughness::{Lobes, MIN_ALPHA};
 use crate::dispatch;
 use crate::parallel::{self, Interrupted, Watch};
 use crate::real::{Lanes, Real};
-use crate::sampling::generator::Generator;
+use crate::sampling::sampler::Sampler;
 use crate::simd::Simd;
 use crate::vec::Vec3;
 
@@ -47,8 +48,8 @@ pub struct Options {
 /// A sample of a pixel.
 #[derive(Clone, Copy)]
 pub struct Sample {
-    random: Generator,
-    pixel: u64,
+    draws: Draws,
+    key: u32,
     index: u32,
 }
 
@@ -56,7 +57,9 @@ impl Sample {
     /// Four independent numbers.
     #[inline(always)]
     pub fn quad<T: Real>(&self, purpose: u32) -> [T; 4] {
-        self.random.quad(self.pixel, self.index, purpose)
+        let [a, b] = self.draws.pair(self.key, self.index, 2 * purpose);
+        let [c, d] = self.draws.pair(self.key, self.index, 2 * purpose + 1);
+        [a, b, c, d]
     }
 }
 
@@ -184,13 +187,13 @@ fn pixels<T: Real, S: Simd>(
     film: Film<'_, T>,
 ) {
     let half = T::of(0.5);
+    let draws = Draws { sampler: Sampler::Independent { seed: options.seed }, seed: options.seed };
     for k in 0..film.mean.len() {
         let pixel = first + k;
         let (x, y) = (T::of((pixel % options.width) as f64), T::of((pixel / options.width) as f64));
-        let random = Generator::new(options.seed);
-        let mut tally = Tally::default();
+        let (mut tally, key) = (Tally::default(), draws.key(pixel as u32));
         for index in options.start..options.start + options.samples {
-            let sample = Sample { random, pixel: pixel as u64, index };
+            let sample = Sample { draws, key, index };
             let [a, b, lens @ ..] = sample.quad::<T>(purpose::EYE);
             let [dx, dy] = filter.warp([a, b]);
             let [time, ..] = sample.quad::<T>(purpose::TIME);

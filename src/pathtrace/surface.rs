@@ -48,6 +48,11 @@ pub struct Spot<T> {
 }
 
 impl<T: Real> Spot<T> {
+    /// The shading normal, if light counts from its side alone; else zero.
+    #[inline(always)]
+    pub fn side(&self) -> Vec3<T> {
+        if self.bsdf.transmits() { Vec3::splat(T::zero()) } else { self.frame.z }
+    }
     /// Whether a direction, in the frame and in the world, lies on one side by both normals.
     #[inline(always)]
     pub fn agrees(&self, local: Vec3<T>, world: Vec3<T>) -> bool {

@@ -47,6 +47,8 @@ pub struct Path<T> {
     pub pdf: T,
     /// Undoes what interfaces did to radiance, which says nothing of the light to come.
     pub scale: T,
+    /// Shading normal of where the ray starts; zero where light comes from both sides.
+    pub normal: Vec3<T>,
 }
 
 /// The queues.
@@ -64,6 +66,8 @@ pub struct Wave<T> {
     /// Paths that met diffusers, and those that met other materials.
     diffuse: Vec<u32>,
     other: Vec<u32>,
+    /// Rays that met nothing, where there is a panorama.
+    pub sky: Vec<u32>,
     /// Of each slot: its key, its sample, the radiance so far.
     pub keys: Vec<u32>,
     pub samples: Vec<u32>,
@@ -83,6 +87,7 @@ impl<T: Real> Wave<T> {
             blocked: Vec::new(),
             diffuse: Vec::new(),
             other: Vec::new(),
+            sky: Vec::new(),
             keys: Vec::new(),
             samples: Vec::new(),
             sums: Vec::new(),
@@ -104,7 +109,8 @@ impl<T: Real> Wave<T> {
         let slot = self.sums.len() as u32;
         let one = Vec3::splat(T::one());
         self.rays.push(ray);
-        self.paths.push(Path { slot, carried: one, pdf: T::INFINITY, scale: T::one() });
+        let normal = Vec3::splat(T::zero());
+        self.paths.push(Path { slot, carried: one, pdf: T::INFINITY, scale: T::one(), normal });
         self.keys.push(key);
         self.samples.push(sample);
         self.sums.push(Vec3::splat(T::zero()));
@@ -131,7 +137,7 @@ impl<T: Real> Tracer<'_, T> {
             }
             wave.hits.resize(wave.rays.len(), Hit::miss());
             self.scene.bvh.closest_hits(s, &wave.rays, &mut wave.hits);
-            self.collect(wave, depth);
+            self.collect(s, wave, depth);
             if depth == self.options.max_depth {
                 return;
             }
@@ -149,7 +155,7 @@ impl<T: Real> Tracer<'_, T> {
 
     /// The share of light that a direction of density `own` found, where the light's own draws have density `other`.
     #[inline(always)]
-    fn found(&self, own: T, other: T) -> T {
+    pub fn found(&self, own: T, other: T) -> T {
         match self.options.strategy {
             Strategy::Mis => weight(own, other),
             Strategy::Light if own.is_finite() => T::zero(),
@@ -159,46 +165,49 @@ impl<T: Real> Tracer<'_, T> {
 
     /// The emission that rays meet; sorts the surfaces that go on.
     #[inline(always)]
-    fn collect(&self, wave: &mut Wave<T>, depth: u32) {
+    fn collect<S: Simd>(&self, s: S, wave: &mut Wave<T>, depth: u32) {
         let scene = self.scene;
         wave.diffuse.clear();
         wave.other.clear();
+        wave.sky.clear();
         let before = depth.saturating_sub(1);
         for i in 0..wave.rays.len() {
             let (ray, hit, path) = (&wave.rays[i], wave.hits[i], wave.paths[i]);
             let (origin, direction) = (Vec3::from(ray.origin), Vec3::from(ray.direction));
             let sum = &mut wave.sums[path.slot as usize];
             if let Some((source, radiance, pdf)) = scene.light_before(origin, direction, hit.t) {
-                let share = self.found(path.pdf, pdf * self.lighting.chance(source, origin, before));
+                let share =
+                    self.found(path.pdf, pdf * self.lighting.chance(source, origin, path.normal, before));
                 *sum = *sum + path.carried.times(radiance) * share;
             } else if hit.is_hit() {
                 let row = scene.material_ids[hit.face as usize] as usize;
                 if let Some((radiance, other)) =
-                    scene.glow(self.lighting, hit.face as usize, ray, hit.t, before)
+                    scene.glow(self.lighting, hit.face as usize, ray, path.normal, hit.t, before)
                 {
                     *sum = *sum + path.carried.times(radiance) * self.found(path.pdf, other);
                 }
                 if self.diffuse[row] { wave.diffuse.push(i as u32) } else { wave.other.push(i as u32) }
             } else if hit.t == T::INFINITY {
-                let arrives = self.beyond(origin, direction, path.pdf, before);
+                let arrives = self.beyond(origin, direction, &path, before);
                 *sum = *sum + path.carried.times(arrives);
+                if scene.environment.is_some() {
+                    wave.sky.push(i as u32);
+                }
             }
+        }
+        if let Some(sky) = scene.environment {
+            self.look_up(s, sky, wave, before);
         }
     }
 
-    /// Radiance from where nothing is, weighed.
+    /// Radiance from where nothing is but a panorama, weighed.
     #[inline(always)]
-    fn beyond(&self, origin: Vec3<T>, direction: Vec3<T>, pdf: T, before: u32) -> Vec3<T> {
+    fn beyond(&self, origin: Vec3<T>, direction: Vec3<T>, path: &Path<T>, before: u32) -> Vec3<T> {
         let mut sum = self.scene.background;
-        if let Some(sky) = self.scene.environment {
-            let (radiance, other) = sky.eval_and_pdf(direction);
-            let chance = self.lighting.chance(self.lighting.sky(), origin, before);
-            sum = sum + radiance * self.found(pdf, other * chance);
-        }
         for (k, light) in self.scene.lights.iter().enumerate() {
             if let Light::Ambient { radiance } = light {
-                let other = light.pdf(origin, direction) * self.lighting.chance(k, origin, before);
-                sum = sum + *radiance * self.found(pdf, other);
+                let chance = self.lighting.chance(k, origin, path.normal, before);
+                sum = sum + *radiance * self.found(path.pdf, light.pdf(origin, direction) * chance);
             }
         }
         sum
@@ -236,14 +245,22 @@ impl<T: Real> Tracer<'_, T> {
         let (range, chance) = if lighting.asks_all(depth) {
             (0..lighting.sources(), T::one())
         } else {
-            let Some((source, chance)) = lighting.draw(from, choice) else { return };
+            let Some((source, chance)) = lighting.draw(from, spot.side(), choice) else { return };
             (source..source + 1, chance)
         };
         let first = range.start;
         for source in range {
-            let purpose = purpose::LIGHT + (source - first) as u32;
-            let u = self.draws.pair(key, sample, self.pair(depth, purpose));
-            let Some(light) = self.scene.arrival(lighting, source, spot.point, pick, u) else { continue };
+            let pair = self.pair(depth, purpose::LIGHT + (source - first) as u32);
+            let light = match self.scene.environment {
+                Some(sky) if source == lighting.sky() => {
+                    self.ask_sky_for(sky, spot, (key, sample, pair), pick, chance)
+                }
+                _ => {
+                    let u = self.draws.pair(key, sample, pair);
+                    self.scene.arrival(lighting, source, spot.point, pick, u)
+                }
+            };
+            let Some(light) = light else { continue };
             let beam = !light.pdf.is_finite();
             if !beam && !self.options.strategy.asks_lights() {
                 continue;
@@ -298,12 +315,12 @@ impl<T: Real> Tracer<'_, T> {
         let carried = carried * (one / survival);
         let pdf = if draw.specular { T::INFINITY } else { draw.pdf };
         wave.next_rays.push(leave(spot.point, spot.normal, out, self.scene.offset, T::INFINITY));
-        wave.next_paths.push(Path { carried, pdf, scale, ..path });
+        wave.next_paths.push(Path { carried, pdf, scale, normal: spot.side(), ..path });
     }
 
     /// The density with which the strategy draws a direction.
     #[inline(always)]
-    fn direction_pdf(&self, spot: &Spot<T>, wi: Vec3<T>) -> T {
+    pub fn direction_pdf(&self, spot: &Spot<T>, wi: Vec3<T>) -> T {
         if self.options.strategy != Strategy::Uniform {
             spot.bsdf.pdf(wi, spot.wo)
         } else {

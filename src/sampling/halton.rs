@@ -230,8 +230,10 @@ pub fn halton_many<T: Real>(
     out: &mut [T],
 ) -> Result<(), Interrupted> {
     let points = out.len() / dimensions.max(1);
+    // Plain digits of a large base are no table's, but follow each other row by row.
+    let tabled = if scrambling == Scrambling::None { dimensions.min(TABLED) } else { dimensions };
     let (key, limit) = (Key::new(seed, 0), if dimensions > 32 { 512 } else { 4096 });
-    let mut tables: Vec<Option<Table>> = (0..dimensions).map(|_| None).collect();
+    let mut tables: Vec<Option<Table>> = (0..tabled).map(|_| None).collect();
     parallel::for_each(watch, &mut tables[..], 8, |first, tables| {
         for (d, table) in tables.iter_mut().enumerate() {
             *table = Some(Table::new(scrambling, key, first + d, limit.min(points as u64)));
@@ -246,17 +248,70 @@ pub fn halton_many<T: Real>(
 }
 
 const TILE: usize = 64;
+/// Dimensions whose numbers are looked up even if they are plain: those of primes up to 509.
+const TABLED: usize = 97;
+
+/// Plain coordinates of following indices, dimensions side by side: the last digit of each, and what those above it
+/// come to.
+struct Counter {
+    base: Vec<f64>,
+    digit: Vec<f64>,
+    tail: Vec<f64>,
+    /// The digits above the last, as a number.
+    high: Vec<u64>,
+}
+
+impl Counter {
+    fn new(first: u64, bases: &[u32]) -> Self {
+        let mut made = Counter { base: Vec::new(), digit: Vec::new(), tail: Vec::new(), high: Vec::new() };
+        for &b in bases {
+            let high = first / u64::from(b);
+            made.base.push(f64::from(b));
+            made.digit.push((first % u64::from(b)) as f64);
+            made.high.push(high);
+            made.tail.push(mirrored(high, b));
+        }
+        made
+    }
+
+    /// One coordinate each, and on to the next index.
+    #[inline(always)]
+    fn step<T: Real>(&mut self, out: &mut [T]) {
+        let n = out.len();
+        let (base, digit, tail) = (&self.base[..n], &mut self.digit[..n], &self.tail[..n]);
+        let mut full = 0.0f64;
+        for d in 0..n {
+            out[d] = below_one((digit[d] + tail[d]) / base[d]);
+            digit[d] += 1.0;
+            full += if digit[d] == base[d] { 1.0 } else { 0.0 };
+        }
+        if full == 0.0 {
+            return;
+        }
+        for d in 0..n {
+            if self.digit[d] == self.base[d] {
+                self.digit[d] = 0.0;
+                self.high[d] += 1;
+                self.tail[d] = mirrored(self.high[d], self.base[d] as u32);
+            }
+        }
+    }
+}
 
 #[inline(always)]
 fn body<T: Real>(first: u64, tables: &[Table], rows: Rows<'_, T>) {
     let (width, data) = (rows.width, rows.data);
     let total = data.len() / width;
     // The last index whose upper digits were summed, for each dimension.
-    let mut tails = vec![(u64::MAX, 0.0); width];
+    let mut tails = vec![(u64::MAX, 0.0); tables.len()];
+    let mut counter = Counter::new(first, &PRIMES[tables.len()..width]);
     let mut start = 0;
     while start < total {
         let count = TILE.min(total - start);
-        for d in 0..width {
+        for i in start..start + count {
+            counter.step(&mut data[i * width + tables.len()..(i + 1) * width]);
+        }
+        for d in 0..tables.len() {
             let (table, base) = (&tables[d], PRIMES[d]);
             let (mut done, size) = (0, table.size());
             while done < count {

@@ -10,7 +10,7 @@ use super::hash::Key;
 use super::latin_hypercube::stratum;
 use super::multi_jittered::multi_jittered;
 use super::r2::rotated_pair;
-use super::sobol::padded_pair;
+use super::sobol::{padded_pair, shuffled};
 use super::stratified::shuffled_cell;
 use crate::dispatch;
 use crate::parallel::{self, Interrupted, Watch};
@@ -81,7 +81,12 @@ impl Sampler {
                 let (key, i) = grid.set(pixel, sample, pair);
                 multi_jittered(key, i, grid.samples, grid.columns, false)
             }
-            Sampler::R2 { seed } => rotated_pair(Key::new(seed, pixel).at(pair), sample),
+            Sampler::R2 { seed } => {
+                let key = Key::new(seed, pixel).at(pair);
+                // The first as it is, each other in an order of its own: pairs that ran alike would fill no more than a
+                // surface of their product.
+                rotated_pair(key, if pair == 0 { sample } else { shuffled(key.at(2), sample) })
+            }
             Sampler::Sobol { seed } => padded_pair(Key::new(seed, pixel).at(pair), sample),
             Sampler::Independent { seed } => Generator::new(seed).pair(pixel, sample, dimension / 2),
             Sampler::LatinHypercube(grid) => [0, 1].map(|d| grid.stratum(pixel, sample, dimension + d)),

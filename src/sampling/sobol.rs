@@ -122,13 +122,19 @@ impl Scramble {
     }
 }
 
+/// An index in an order of the key's own: aligned blocks of 2^k indices remain such blocks.
+#[inline(always)]
+pub fn shuffled(key: Key, index: u32) -> u32 {
+    Scramble::keyed(key).reversed(index.reverse_bits()).reverse_bits()
+}
+
 /// Two coordinates of point `index` of a sequence of the key's own: the first two dimensions, in shuffled order and
 /// scrambled. Aligned blocks of 2^k indices remain (0, k, 2)-nets, and sequences of different keys are independent, so
 /// any number of pairs can be padded to a point of many dimensions (Burley 2020).
 #[inline(always)]
 pub fn padded_pair<T: Real>(key: Key, index: u32) -> [T; 2] {
-    // The shuffle scrambles the index itself; the first dimension is the index with its digits reversed.
-    let index = Scramble::keyed(key.at(0)).reversed(index.reverse_bits()).reverse_bits();
+    // The first dimension is the index with its digits reversed.
+    let index = shuffled(key.at(0), index);
     // The second is Pascal's triangle modulo 2: digit l is the sum of those digits whose number contains l's bits.
     let mut second = index;
     second ^= second >> 1 & 0x5555_5555;

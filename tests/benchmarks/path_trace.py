@@ -2,14 +2,18 @@
 
 Errors are against one converged picture of Mitsuba's in two independent halves A and B, mean((x − A)(x − B)), so that
 its own noise drops out; efficiency is one over error² · time. Mitsuba runs in processes of its own, its kernels
-compiled before they are timed. Our own independent numbers show what is due to speed and what to scrambled points.
+compiled before they are timed. Our own independent numbers tell the causes apart: time a sample (speed), error of ours
+to theirs with independent numbers (how lights are looked for), and of scrambled points to independent ones (points).
 
-python tests/benchmarks/path_trace.py [--size 256] [--samples 64] [--converged 1024]
+python tests/benchmarks/path_trace.py [--size 256] [--samples 64] [--converged 1024] [--only equal constant …]
+
+`llvm_ad_rgb` needs an LLVM that Dr.Jit can use: name one by DRJIT_LIBLLVM_PATH if the system's aborts.
 """
 
 import argparse
 import importlib.util
 import os
+import resource
 import subprocess
 import sys
 import tempfile
@@ -147,20 +151,68 @@ def equal_error(given):
             spread = error(picture, halves) * given.samples
             print(f"{name:8} {k:22} wall {wall:6.0f} ns, cpu {cpu:6.0f} ns a sample, error² · samples {spread:.5f},")
             print(f"{'':31} efficiency over ours: wall {ratio[0]:.3f}, cpu {ratio[1]:.3f}")
+        plain, (_, ours) = error(rows["shadelab independent"][0], halves), rows["shadelab sobol"]
+        points = plain / error(rows["shadelab sobol"][0], halves)
+        for k in ("llvm_ad_rgb", "scalar_rgb"):
+            if k in rows:
+                theirs = rows[k]
+                speed, lights = theirs[1][1] / ours[1], error(theirs[0], halves) / plain
+                print(f"{name:8} against {k}: speed {speed:.2f} × lights {lights:.2f} × points {points:.2f}")
 
 
-def constancy():
+def constancy(given):
+    """Processor time a sample, least of three, with one thread: what else runs changes it least."""
     world = cornell()
-    for size, samples in ((128, 64), (256, 16), (512, 4), (1024, 1), (2048, 1), (128, 1), (128, 4), (64, 4096 // 16)):
-        _, seconds = timed(lambda n=size, k=samples: sl.pathtrace.path_trace(world, (n, n), k, DEPTH))
-        print(f"{size:5}² {samples:5} samples: cpu {seconds[1] / size**2 / samples * 1e9:6.0f} ns a sample")
+    sl.set_threads(1)
+    bvh = sl.BVH(*(lambda a: (a.positions, a.faces))(world.flatten(np.float32)))
+    sizes = [(size, 4) for size in (128, 256, 512, 1024, 2048)]
+    samples = [(32, 4**k) for k in range(7)]
+    for kind, cases in (("sizes", sizes), ("samples", samples)):
+        least = {}
+        for _ in range(3):
+            for size, count in cases:
+                start = time.process_time()
+                # Small pictures again and again, for half a million paths.
+                times = max(1, 2**19 // (size**2 * count))
+                for i in range(times):
+                    sl.pathtrace.path_trace(world, (size, size), count, DEPTH, i, bvh=bvh)
+                ns = (time.process_time() - start) / (times * size**2 * count) * 1e9
+                least[size, count] = min(ns, least.get((size, count), np.inf))
+        for (size, count), ns in least.items():
+            print(f"{size:5}² {count:5} samples: cpu {ns:6.0f} ns a sample")
+        print(f"over {kind}: largest over least {max(least.values()) / min(least.values()):.3f}")
+    sl.set_threads(None)
 
 
-def first_picture():
-    for name in ("shadelab", "llvm_ad_rgb"):
-        start = time.perf_counter()
-        subprocess.run([sys.executable, __file__, "--first", name], check=False)
-        print(f"first picture, {name}: {time.perf_counter() - start:.2f} s")
+def memory():
+    """The peak of a process of its own, by samples."""
+    for samples in (1, 64, 4096):
+        code = (
+            "import runpy, resource, shadelab as sl;"
+            f"world = runpy.run_path({__file__!r}, run_name='given')['cornell']();"
+            f"sl.pathtrace.path_trace(world, (64, 64), {samples}, {DEPTH});"
+            "print(resource.getrusage(resource.RUSAGE_SELF).ru_maxrss / 1024)"
+        )
+        out = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True).stdout
+        print(f"64² {samples:5} samples: peak {float(out):.1f} MB")
+
+
+def first_picture(given):
+    least = {}
+
+    def spent():
+        used = resource.getrusage(resource.RUSAGE_CHILDREN)
+        return np.array([time.perf_counter(), used.ru_utime + used.ru_stime])
+
+    for _ in range(3):
+        for name in ("shadelab", "llvm_ad_rgb", "scalar_rgb"):
+            start = spent()
+            done = subprocess.run([sys.executable, __file__, "--first", name], check=False, capture_output=True)
+            if done.returncode == 0:
+                least[name] = np.minimum(spent() - start, least.get(name, np.inf))
+    for name, seconds in least.items():
+        (wall, cpu), ratio = seconds, seconds / least["shadelab"]
+        print(f"first picture, {name}: wall {wall:.2f} s, cpu {cpu:.2f} s; of ours {ratio[0]:.1f} and {ratio[1]:.1f}")
 
 
 def main():
@@ -168,6 +220,7 @@ def main():
     parser.add_argument("--size", type=int, default=256)
     parser.add_argument("--samples", type=int, default=64)
     parser.add_argument("--converged", type=int, default=1024)
+    parser.add_argument("--only", nargs="+", choices=("equal", "constant", "memory", "first"))
     parser.add_argument("--mitsuba", nargs=6, help=argparse.SUPPRESS)
     parser.add_argument("--first", help=argparse.SUPPRESS)
     given = parser.parse_args()
@@ -180,9 +233,9 @@ def main():
         with tempfile.TemporaryDirectory() as folder:
             mitsuba(given.first, "cornell", 256, 1, 0, str(Path(folder) / "first.npz"))
     else:
-        equal_error(given)
-        constancy()
-        first_picture()
+        rows = {"equal": equal_error, "constant": constancy, "memory": lambda given: memory(), "first": first_picture}
+        for name in given.only or rows:
+            rows[name](given)
 
 
 if __name__ == "__main__":

@@ -201,6 +201,19 @@ def test_depth_zero_shows_emission_alone_and_depth_adds_light():
     assert np.allclose(emission.radiance, (12, 10, 8), rtol=1e-6) and emission.variance.max() < 1e-9
 
 
+def test_even_light_is_the_same_whatever_its_name():
+    ball, shade = mesh.icosphere(2), (0.5, 1.0, 0.25)
+    camera = scene.Camera((0, 0, 3), (0, 0, 0))
+    sky = sl.environment.Environment(np.full((4, 8, 3), shade, np.float32))
+    options = {"size": (16, 12), "samples": 8, "max_depth": 3}
+    wanted = sl.pathtrace.path_trace(scene.Scene(ball, (), camera, background=shade), **options).radiance
+    for lit in (
+        scene.Scene(ball, sl.light.AmbientLight(shade), camera),
+        scene.Scene(ball, (), camera, environment=sky),
+    ):
+        assert np.array_equal(sl.pathtrace.path_trace(lit, **options).radiance, wanted)
+
+
 def test_wrong_calls_name_the_argument():
     world = punctual()
     with pytest.raises(ValueError, match="size: expected an integer"):

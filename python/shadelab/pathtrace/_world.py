@@ -3,14 +3,14 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
+from functools import cached_property
 from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
-from numpy.typing import DTypeLike
 
-from .. import _arrays
+from .. import _arrays, light
 from ..accel import BVH
-from ._common import check_bvh
+from ._common import check_bvh, surface_offset
 
 if TYPE_CHECKING:
     from ..scene import Scene, SceneArrays
@@ -30,17 +30,11 @@ class Moment(NamedTuple):
     """What the camera's own shutter becomes; None leaves it."""
 
 
-def precision(dtype: DTypeLike) -> np.dtype[Any]:
-    made = np.dtype(dtype)
-    if made not in (np.dtype(np.float32), np.dtype(np.float64)):
-        raise TypeError(f"dtype: expected float32 or float64, got {made}")
-    return made
-
-
 class World:
     """The scene and its hierarchy at time 0, refitted at others."""
 
-    def __init__(self, scene: Scene, bvh: BVH | None, dtype: np.dtype[Any]) -> None:
+    def __init__(self, scene: Scene, bvh: BVH | None, dtype: np.dtype[Any], all_directions: bool = False) -> None:
+        """With `all_directions`, light that comes evenly from everywhere is background, not a source to be asked."""
         if not callable(getattr(scene, "flatten", None)) or isinstance(scene, np.ndarray):
             raise TypeError(f"scene: expected a Scene, got {type(scene).__name__}")
         self.scene, self.dtype = scene, dtype
@@ -53,7 +47,31 @@ class World:
             if own[0].dtype != dtype or not all(np.array_equal(a, b) for a, b in zip(own, mine, strict=True)):
                 raise ValueError(f"bvh: expected one of the flattened scene in {dtype}")
         self.bvh = bvh
+        self._all_directions = all_directions
         _arrays.warn_if_coarse(self.arrays.positions, dtype, 5)
+
+    @cached_property
+    def _sources(self) -> tuple[Any, tuple[float, ...], Any]:
+        """The lights; the background; the panorama."""
+        scene = self.scene
+        lights, background, sky = list(scene.lights), np.array(scene.background, float), scene.environment
+        if self._all_directions:
+            ambient = [lamp for lamp in lights if isinstance(lamp, light.AmbientLight)]
+            lights = [lamp for lamp in lights if not isinstance(lamp, light.AmbientLight)]
+            for lamp in ambient:
+                background += lamp.radiance
+            if sky is not None and not np.ptp(sky.radiance, axis=(0, 1)).any():
+                background, sky = background + sky.radiance[0, 0], None
+        panorama = None if sky is None else sky._panorama(self.dtype)
+        return light._table("lights", lights), tuple(float(c) for c in background), panorama
+
+    def given(self, moment: Moment) -> tuple[Any, ...]:
+        """The scene at a moment, as kernels take it."""
+        a = moment.arrays
+        tables = (a.positions, a.faces, a.normals, a.material_ids, a.kinds, a.rows, a.emission)
+        flat = [np.require(x, requirements=["C", "A"]) for x in tables]
+        lights, background, sky = self._sources
+        return moment.bvh._tree, flat[:4], a.colors, flat[4:], lights, (background, surface_offset(a.positions), sky)
 
     def at(self, time: float) -> tuple[SceneArrays, BVH]:
         """The scene at a time in [0, 1]."""

@@ -13,7 +13,7 @@ from .._arrays import Floats
 from .._kernels import pathtrace as _kernels
 from ..accel import BVH
 from ._common import Size, lens_camera, picture_size
-from ._world import Moment, World, precision
+from ._world import Moment, World
 from .filters import FilterName, PixelFilter, pixel_filter
 
 if TYPE_CHECKING:
@@ -105,7 +105,7 @@ def aovs(
     seed = _arrays.count("seed", seed, 0, 2**64 - 1)
     start = _arrays.count("start", start, 0, 2**32 - 1 - samples)
     kernel_filter = pixel_filter(filter)._kernel()
-    world = World(scene, bvh, precision(dtype))
+    world = World(scene, bvh, _arrays.precision("dtype", dtype))
     call = _arrays.progress_callback(progress, "aovs")
     moved = world.at(1.0)[0].positions if scene.moves else None
     # What passes through glass keeps its colour.

@@ -8,11 +8,11 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from numpy.typing import DTypeLike
 
-from .. import _arrays, light
+from .. import _arrays
 from .._kernels import pathtrace as _kernels
 from ..accel import BVH
-from ._common import Size, lens_camera, picture_size, surface_offset
-from ._world import Moment, World, precision
+from ._common import Size, lens_camera, picture_size
+from ._world import Moment, World
 from .estimate import Film, Traced
 from .filters import FilterName, PixelFilter, pixel_filter
 
@@ -175,24 +175,15 @@ def _recursion(
     seed = _arrays.count("seed", seed, 0, 2**64 - 1)
     start = _arrays.count("start", start, 0, 2**32 - 1 - samples)
     kernel_filter = pixel_filter(filter)._kernel()
-    world = World(scene, bvh, precision(dtype))
-    lights = light._table("lights", scene.lights)
-    sky = None if scene.environment is None else scene.environment._panorama(world.dtype)
-    background = tuple(float(c) for c in scene.background)
+    world = World(scene, bvh, _arrays.precision("dtype", dtype))
     call = _arrays.progress_callback(progress, method)
 
     def trace(moment: Moment) -> Traced:
-        a, n = moment.arrays, size[0] * size[1]
+        n = size[0] * size[1]
         out: list[Any] = [np.empty((n, 3), world.dtype), np.empty((n, 3), world.dtype), np.empty(n, np.int32)]
-        tables = (a.kinds, a.rows, a.emission)
         _kernels.recursion(
             method,
-            moment.bvh._tree,
-            [np.require(x, requirements=["C", "A"]) for x in (a.positions, a.faces, a.normals, a.material_ids)],
-            a.colors,
-            [np.require(x, requirements=["C", "A"]) for x in tables],
-            lights,
-            (background, surface_offset(a.positions), sky),
+            world.given(moment),
             (lens_camera(scene.camera, size, moment.shutter), kernel_filter),
             (size[0], moment.samples, moment.start, max_depth, seed, cutoff),
             out,

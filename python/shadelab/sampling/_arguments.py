@@ -17,11 +17,3 @@ def unsigned(name: str, value: ArrayLike, dtype: DTypeLike) -> NDArray[Any]:
     if array.size and (int(array.min()) < 0 or int(array.max()) > limit):
         raise ValueError(f"{name}: expected integers from 0 to {limit}, got {array.min()} … {array.max()}")
     return array.astype(dtype)
-
-
-def precision(dtype: DTypeLike) -> np.dtype[Any]:
-    """float32 or float64, as asked."""
-    wanted = np.dtype(dtype)
-    if wanted not in (np.dtype(np.float32), np.dtype(np.float64)):
-        raise TypeError(f"dtype: expected float32 or float64, got {wanted}")
-    return wanted

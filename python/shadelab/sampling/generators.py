@@ -11,7 +11,7 @@ from numpy.typing import ArrayLike, DTypeLike, NDArray
 from .. import _arrays
 from .._arrays import Floats
 from .._kernels import sampling as _kernels
-from ._arguments import precision, unsigned
+from ._arguments import unsigned
 
 __all__ = ["Generator", "Sampler", "SamplerKind", "philox"]
 
@@ -131,7 +131,7 @@ class Generator:
             If an argument is no integer of its range, or shapes do not broadcast.
         """
         shape, places = _places(pixel, sample, dimension)
-        out = _arrays.output("out", None, places[0].shape, precision(dtype))
+        out = _arrays.output("out", None, places[0].shape, _arrays.precision("dtype", dtype))
         _kernels.uniform(self.seed, *places, out)
         return out.reshape(shape)
 
@@ -213,6 +213,6 @@ class Sampler:
             If an argument is no integer of its range, or shapes do not broadcast.
         """
         shape, places = _places(pixel, sample, dimension)
-        out = _arrays.output("out", None, places[0].shape, precision(dtype))
+        out = _arrays.output("out", None, places[0].shape, _arrays.precision("dtype", dtype))
         _kernels.sampler(self.kind, self.seed, self.samples, *places, out)
         return out.reshape(shape)

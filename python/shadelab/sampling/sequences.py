@@ -12,7 +12,6 @@ from numpy.typing import DTypeLike
 from .. import _arrays
 from .._arrays import Floats
 from .._kernels import sampling as _kernels
-from ._arguments import precision
 from .generators import Generator
 
 __all__ = ["halton", "hammersley", "r2", "sobol"]
@@ -92,7 +91,7 @@ def sobol(
     dimensions = _arrays.count("dimensions", dimensions, 1, _kernels.SEQUENCE_DIMENSIONS)
     if scramble is not None:
         _arrays.choice("scramble", scramble, ("owen",))
-    out = _arrays.output("out", out, (n, dimensions), precision(dtype))
+    out = _arrays.output("out", out, (n, dimensions), _arrays.precision("dtype", dtype))
     _kernels.sobol(None if scramble is None else seed, start, out)
     return out
 
@@ -164,7 +163,7 @@ def halton(
     dimensions = _arrays.count("dimensions", dimensions, 1, _kernels.SEQUENCE_DIMENSIONS)
     if scramble is not None:
         _arrays.choice("scramble", scramble, ("owen", "digits"))
-    out = _arrays.output("out", out, (n, dimensions), precision(dtype))
+    out = _arrays.output("out", out, (n, dimensions), _arrays.precision("dtype", dtype))
     _kernels.halton(scramble, seed, start, out)
     return out
 
@@ -314,7 +313,7 @@ def r2(
         starts = [int(u * 2**53) << 75 for u in Generator(seed).uniform(2**64 - 2, 0, np.arange(dimensions))]
     else:
         starts = [int(_arrays.number("offset", offset, 0, below=1) * 2**64) << 64] * dimensions
-    out = _arrays.output("out", out, (n, dimensions), precision(dtype))
+    out = _arrays.output("out", out, (n, dimensions), _arrays.precision("dtype", dtype))
     halves = [[(x >> 64, x & (2**64 - 1)) for x in xs] for xs in (golden_steps(dimensions), starts)]
     _kernels.r2(*halves, start, out)
     return out

@@ -12,7 +12,6 @@ from numpy.typing import DTypeLike
 from .. import _arrays
 from .._arrays import Floats
 from .._kernels import sampling as _kernels
-from ._arguments import precision
 from .sequences import golden_steps
 
 __all__ = [
@@ -84,7 +83,7 @@ def stratified(
     if not axes:
         raise ValueError("counts: expected at least one axis, got none")
     axes = [_arrays.count("counts", c, 1, 2**31 - 1) for c in axes]
-    out = _arrays.output("out", out, (math.prod(axes), len(axes)), precision(dtype))
+    out = _arrays.output("out", out, (math.prod(axes), len(axes)), _arrays.precision("dtype", dtype))
     _kernels.stratified(_seed(seed), axes, bool(jitter), out)
     return out
 
@@ -145,7 +144,7 @@ def latin_hypercube(
     """
     n = _arrays.count("n", n, 0, 2**32 - 1)
     dimensions = _arrays.count("dimensions", dimensions, 1, 2**32 - 1)
-    out = _arrays.output("out", out, (n, dimensions), precision(dtype))
+    out = _arrays.output("out", out, (n, dimensions), _arrays.precision("dtype", dtype))
     _kernels.latin_hypercube(_seed(seed), bool(jitter), out)
     return out
 
@@ -212,7 +211,7 @@ def multi_jittered(
     else:
         total = _arrays.count("n", n, 0, 2**31 - 1)
         columns = max(math.isqrt(max(total - 1, 0)) + 1, 1)
-    out = _arrays.output("out", out, (total, 2), precision(dtype))
+    out = _arrays.output("out", out, (total, 2), _arrays.precision("dtype", dtype))
     _kernels.multi_jittered(_seed(seed), columns, bool(correlated), out)
     return out
 
@@ -260,7 +259,7 @@ def fibonacci_sphere(n: int, *, rotation: float = 0, dtype: DTypeLike = np.float
     >>> fibonacci_sphere(5)[:, 2]
     array([ 0.8,  0.4,  0. , -0.4, -0.8])
     """
-    out = _arrays.output("out", None, (_arrays.count("n", n), 3), precision(dtype))
+    out = _arrays.output("out", None, (_arrays.count("n", n), 3), _arrays.precision("dtype", dtype))
     _kernels.fibonacci_sphere(*_spiral(rotation), out)
     return out
 
@@ -300,7 +299,7 @@ def vogel_disk(n: int, *, rotation: float = 0, dtype: DTypeLike = np.float64) ->
     >>> np.hypot(*vogel_disk(2).T)
     array([0.5      , 0.8660254])
     """
-    out = _arrays.output("out", None, (_arrays.count("n", n), 2), precision(dtype))
+    out = _arrays.output("out", None, (_arrays.count("n", n), 2), _arrays.precision("dtype", dtype))
     _kernels.vogel_disk(*_spiral(rotation), out)
     return out
 
@@ -369,7 +368,7 @@ def poisson_disk(
         raise ValueError(f"radius: expected one of which 2**28 cells of a grid fill the domain, got {radius:g}")
     attempts = _arrays.count("attempts", attempts, 1, 2**31 - 1)
     flat = _kernels.poisson_disk(domain, dimensions, radius, attempts, _seed(seed))
-    points: Floats = flat.reshape(-1, dimensions).astype(precision(dtype), copy=False)
+    points: Floats = flat.reshape(-1, dimensions).astype(_arrays.precision("dtype", dtype), copy=False)
     if domain != "disk" and points.dtype == np.float32:
         np.minimum(points, np.nextafter(np.float32(1), np.float32(0)), out=points)
     return points
@@ -421,5 +420,5 @@ def blue_noise_mask(
         raise ValueError(f"size: expected 2 to 2**22 pixels, got {width} x {height}")
     sigma = _arrays.number("sigma", sigma, 0.3, 64)
     ranks = _kernels.blue_noise_mask(width, height, sigma, _seed(seed)).reshape(height, width)
-    mask: Floats = ((ranks + 0.5) / (width * height)).astype(precision(dtype))
+    mask: Floats = ((ranks + 0.5) / (width * height)).astype(_arrays.precision("dtype", dtype))
     return mask

@@ -8,7 +8,7 @@ mod cells;
 mod rays;
 mod tree;
 
-pub use tree::Tree;
+pub use tree::{Held, Tree};
 
 use pyo3::prelude::*;
 

@@ -6,6 +6,7 @@ mod casting;
 mod direct;
 mod paths;
 mod recursion;
+mod world;
 
 use crate::pathtrace::Pinhole;
 use crate::real::Real;

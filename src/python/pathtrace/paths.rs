@@ -1,14 +1,11 @@
 //! All light paths.
 
 use super::camera::{CameraTuple, FilterTuple, camera, filter};
+use super::world::{World, WorldTuple};
 use crate::pathtrace::path_trace::{Film, Options, Strategy};
-use crate::pathtrace::{Emitters, Selection, Surfaces, path_trace as paths};
-use crate::python::accel::Tree;
+use crate::pathtrace::{Selection, path_trace as paths};
 use crate::python::array::{In, Out, run, unknown};
-use crate::python::environment::Surroundings;
-use crate::python::light::lights;
 use crate::real;
-use crate::real::Real;
 use crate::sampling::sampler::Sampler;
 use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
@@ -39,19 +36,12 @@ fn options(
     Ok(Options { width, samples, start, max_depth, roulette, seed, strategy, sampler, selection, clamp })
 }
 
-/// `mesh`: positions, faces, normals, material_ids; `tables`: kinds and rows of reflection
-/// models, emission; `surroundings`: background, offset, panorama;
 /// `out`: mean and variance, then counts of outliers and what clamping removed, if wanted. With `pixels`, their rows
 /// alone.
 #[pyfunction]
 pub fn path_trace(
     py: Python<'_>,
-    tree: &Tree,
-    mesh: [Bound<'_, PyAny>; 4],
-    colors: Option<&Bound<'_, PyAny>>,
-    tables: [Bound<'_, PyAny>; 3],
-    light_table: &Bound<'_, PyAny>,
-    surroundings: ([f64; 3], f64, Option<PyRef<'_, Surroundings>>),
+    world: WorldTuple<'_>,
     view: (CameraTuple, FilterTuple),
     options: OptionsTuple,
     pixels: Option<&Bound<'_, PyAny>>,
@@ -62,34 +52,8 @@ pub fn path_trace(
         return Err(PyValueError::new_err("out: expected mean and variance"));
     };
     real!(mean, T => {
-        let bvh = tree.of::<T>()?;
-        let [positions, faces, normals, material_ids] = &mesh;
-        let (positions, faces) = (In::<T>::of("positions", positions)?, In::<i32>::of("faces", faces)?);
-        let (normals, ids) = (In::<T>::of("normals", normals)?, In::<i32>::of("material_ids", material_ids)?);
-        let colors = colors.map(|c| In::<T>::of("colors", c)).transpose()?;
-        let [kinds, rows, emission] = &tables;
-        let (kinds, rows) = (In::<i32>::of("kinds", kinds)?, In::<T>::of("rows", rows)?);
-        let emission = In::<T>::of("emission", emission)?;
-        let lights = lights::<T>(light_table)?;
-        let emitters = Emitters::find(positions.items()?, faces.items()?, ids.slice()?, emission.items()?);
-        let (background, offset, sky) = surroundings;
-        let environment = sky.as_ref().map(|s| s.of::<T>()).transpose()?.map(|p| &**p);
-        let scene = Surfaces {
-            bvh,
-            positions: positions.items()?,
-            faces: faces.items()?,
-            normals: Some(normals.items()?),
-            colors: colors.as_ref().map(|c| c.items()).transpose()?,
-            material_ids: ids.slice()?,
-            kinds: kinds.slice()?,
-            rows: rows.items()?,
-            emission: emission.items()?,
-            emitters: &emitters,
-            lights: &lights,
-            background: background.map(T::of).into(),
-            environment,
-            offset: T::of(offset),
-        };
+        let world = World::<T>::of(&world)?;
+        let scene = world.surfaces()?;
         let options = self::options(options)?;
         let (camera, filter) = (camera::<T>(view.0), filter(view.1)?);
         let pixels = pixels.map(|p| In::<i32>::of("pixels", p)).transpose()?;

@@ -181,7 +181,7 @@ _TECHNIQUES: Mapping[str, tuple[sampling.SamplerKind | None, str]] = {
     "stratified": ("stratified", "A jittered grid in each pair of dimensions."),
     "latin hypercube": ("latin_hypercube", "Strata along each axis, combined at random."),
     "multi-jittered": ("multi_jittered", "A grid in each pair, and strata along both axes."),
-    "R2": ("r2", "The golden ratio's sequence in each pair, randomly turned."),
+    "R2": ("r2", "The golden ratio's sequence in each pair, randomly turned, in an order of the pair's own."),
     "Halton": ("halton", "Halton's sequence with nested scrambling, all dimensions together."),
     "Sobol, pairs": (
         "sobol",
