@@ -101,6 +101,9 @@ def variance_soft(
     Exact for one flat blocker and a flat receiver parallel to the light, but for the shape of mips; otherwise light
     bleeds where bounds are loose (see `variance`, `moment`), and where the search meets blockers at several depths.
 
+    A lit receiver that slopes within a wide search is grey with four moments, which find it among its own blockers;
+    ``slope_bias=1`` clears that, and drops the shadows of blockers that are nearer than the slope's gain over the search.
+
     References
     ----------
     B. Yang et al., *Variance Soft Shadow Mapping*, Pacific Graphics 2010. A. Lauritzen, *Summed-Area Variance Shadow
