@@ -164,7 +164,7 @@ def constancy(given):
     """Processor time a sample, least of three, with one thread: what else runs changes it least."""
     world = cornell()
     sl.set_threads(1)
-    bvh = sl.BVH(*(lambda a: (a.positions, a.faces))(world.flatten(np.float32)))
+    bvh = sl.accel.BVH(*(lambda a: (a.positions, a.faces))(world.flatten(np.float32)))
     sizes = [(size, 4) for size in (128, 256, 512, 1024, 2048)]
     samples = [(32, 4**k) for k in range(7)]
     for kind, cases in (("sizes", sizes), ("samples", samples)):
