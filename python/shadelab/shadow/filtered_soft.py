@@ -102,7 +102,8 @@ def variance_soft(
     bleeds where bounds are loose (see `variance`, `moment`), and where the search meets blockers at several depths.
 
     A lit receiver that slopes within a wide search is grey with four moments, which find it among its own blockers;
-    ``slope_bias=1`` clears that, and drops the shadows of blockers that are nearer than the slope's gain over the search.
+    ``slope_bias=1`` clears that, and drops the shadows of blockers that are nearer than the slope's gain over the
+    search.
 
     References
     ----------
