@@ -86,19 +86,13 @@ pub fn fresnel_conductor<V: Lanes>(cos_theta: V, eta: V, k: V) -> Fresnel<V> {
     Fresnel { s, p, cos_t: eta.num(0.0) }
 }
 
-/// The same of unpolarised light by two roots and one division: (1 + (t1 − t2) / (t1 + t2)) / 2 = t1 / (t1 + t2).
+/// The same of unpolarised light by one division: (1 + (t1 − t2) / (t1 + t2)) / 2 = t1 / (t1 + t2).
 #[inline(always)]
 pub fn fresnel_metal<V: Lanes>(cos_theta: V, eta: V, k: V) -> V {
     let c2 = cos_theta * cos_theta;
     let s2 = (eta.num(1.0) - cos_theta) * (eta.num(1.0) + cos_theta);
-    // As in `in_metal`, everything times the root q.
-    let real = (eta - k) * (eta + k) - s2;
-    let imaginary = eta.num(2.0) * eta * k;
-    let sum = (real * real + imaginary * imaginary).sqrt();
-    let squared = eta.num(2.0) * (sum + real.abs());
-    let q = squared.max(eta.num(1e-24)).sqrt();
-    let twice = cos_theta * V::select(real.less(real.num(0.0)), eta.num(2.0) * imaginary, squared);
-    let (near, across) = ((sum + c2) * q, (c2 * sum + s2 * s2) * q);
+    let (sum, twice) = in_metal(cos_theta, eta, k);
+    let (near, across) = (sum + c2, c2 * sum + s2 * s2);
     (near - twice) * across / ((near + twice) * (across + twice * s2))
 }
 

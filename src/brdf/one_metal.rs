@@ -50,6 +50,10 @@ impl OneMetal<f64> {
         };
         for c in 0..3 {
             let (eta, k) = (eta[c].to_f64(), k[c].to_f64());
+            // Products of the squares of larger ones leave the range of numbers.
+            if !(eta * eta + k * k < 1e4) {
+                return None;
+            }
             found.real[c] = (eta - k) * (eta + k) - 1.0;
             found.root[c] = fitted(|t| refracted(eta, k, t))?;
         }
