@@ -118,7 +118,7 @@ impl<T: Real> Tracer<'_, T> {
             let mut target = sum(draw.radiance) * cos;
             if mis {
                 let direction_pdf = cos * chance.num(std::f64::consts::FRAC_1_PI);
-                target = target * weight(draw.pdf * many * chance, direction_pdf);
+                target *= weight(draw.pdf * many * chance, direction_pdf);
             }
             let taken = reservoir.offer(Lanes::select(above, target / draw.pdf, zero));
             kept.wi = choose(taken, draw.wi, kept.wi);
@@ -127,7 +127,7 @@ impl<T: Real> Tracer<'_, T> {
             goal = Lanes::select(taken, target, goal);
         }
         kept.value = kept.value * (reservoir.total / (many * goal));
-        kept.pdf = kept.pdf * many;
+        kept.pdf *= many;
         kept.seen = T::V8::<S>::bits(zero.less(goal));
         kept
     }
