@@ -215,4 +215,4 @@ def test_a_picture_has_the_hits_of_a_list(shape):
 
 def test_unknown_methods_are_named():
     with pytest.raises(ValueError, match="method: expected one of"):
-        sl.accel.BVH(np.eye(3), [[0, 1, 2]], "best")
+        sl.accel.BVH(np.eye(3), [[0, 1, 2]], method="best")

@@ -94,4 +94,4 @@ def test_nan_stays_in_its_set_and_methods_are_known():
     got = geometry.bounding_sphere(p)
     assert np.isfinite(got.radius[[0, 2]]).all() and np.isnan(got.radius[1]) and (got.support[1] == -1).all()
     with pytest.raises(ValueError, match="method: expected one of"):
-        geometry.bounding_sphere(p, "welzl")
+        geometry.bounding_sphere(p, method="welzl")

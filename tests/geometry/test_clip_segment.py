@@ -88,7 +88,7 @@ def test_lines_through_corners_within_rounding(dtype, method, shift):
 def test_methods_agree():
     rng = np.random.default_rng(2)
     p, q = rng.normal(size=(2, 2000, 3)) * 2
-    a, b = (geometry.clip_segment(p, q, [-1, -1, -1], [1, 1, 1], m, full_output=True) for m in METHODS)
+    a, b = (geometry.clip_segment(p, q, [-1, -1, -1], [1, 1, 1], method=m, full_output=True) for m in METHODS)
     assert np.array_equal(a.hit, b.hit) and np.array_equal(a.codes, b.codes) and 200 < a.hit.sum() < 1800
     assert np.allclose(a.start, b.start, atol=1e-14, equal_nan=True) and np.allclose(
         a.t, b.t, atol=1e-14, equal_nan=True

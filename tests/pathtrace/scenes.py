@@ -195,6 +195,9 @@ def mitsuba_scene(mi, world, folder, depth, roulette=100):
         shape = {"type": "ply", "filename": str(folder / f"{i}.ply"), "bsdf": bsdf}
         if any(getattr(m, "emission", ())):
             shape["emitter"] = {"type": "area", "radiance": rgb(m.emission)}
+            # With normals of vertices Mitsuba's density of points on an emitter takes the cosine of those, while the
+            # points are drawn on the faces: 0.7 per cent of a glowing torus of 576 faces.
+            shape["face_normals"] = True
         out[f"shape{i}"] = shape
     for i, light in enumerate(world.lights):
         if isinstance(light, PointLight):
