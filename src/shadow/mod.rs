@@ -26,6 +26,7 @@ pub mod pcf;
 pub mod pcss;
 pub mod ray_traced;
 pub mod shadow_map;
+#[cfg_attr(not(feature = "python"), allow(dead_code))] // as `fit`
 pub(crate) mod tested;
 pub mod variance;
 pub mod variance_soft;

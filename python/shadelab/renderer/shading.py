@@ -115,6 +115,9 @@ def shade(
     """
     if (wo is None) == (eye is None):
         raise ValueError("wo: expected either wo or eye, got " + ("neither" if wo is None else "both"))
+    for name, needed in (("points", points), ("normals", normals), ("materials", materials), ("lights", lights)):
+        if needed is None:
+            raise TypeError(f"{name}: expected something, got None")
     packed, count = _table("lights", lights), 1 if isinstance(lights, Light) else len(lights)
     dtype = _arrays.result_dtype(points=points, normals=normals)
     core: dict[str, tuple[Floats, int]] = {}
@@ -139,7 +142,7 @@ def shade(
     numbers = [_arrays.count("samples", n, 0, 1 << 20) for n in _each("samples", samples, int, len(kinds))]
     how = np.array([(METHODS.index(m), n) for m, n in zip(methods, numbers, strict=True)], np.int32)
     ids = None if material_ids is None else _ids(material_ids, shape, len(kinds))
-    flags = None if inside is None else _spread("inside", np.asarray(inside), shape, np.bool_)
+    flags = None if inside is None else _flags(inside, shape)
     fractions = _fractions(lit, count, shape, dtype)
     sky = None if environment is None else _sky(environment, dtype)
     out = _arrays.output("out", out, (*shape, 3), dtype)
@@ -182,6 +185,13 @@ def _spread(name: str, array: NDArray[Any], shape: tuple[int, ...], dtype: Any) 
         return np.ascontiguousarray(np.broadcast_to(array, shape), dtype).reshape(-1)
     except ValueError:
         raise ValueError(f"{name}: expected shape {shape}, got {array.shape}") from None
+
+
+def _flags(given: ArrayLike, shape: tuple[int, ...]) -> NDArray[np.bool_]:
+    flags = np.asarray(given)
+    if flags.dtype != np.bool_:
+        raise TypeError(f"inside: expected booleans, got dtype {flags.dtype}")
+    return _spread("inside", flags, shape, np.bool_)
 
 
 def _ids(given: ArrayLike, shape: tuple[int, ...], count: int) -> NDArray[np.int32]:
