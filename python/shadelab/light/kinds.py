@@ -400,6 +400,10 @@ class AmbientLight:
     TypeError, ValueError
         If `radiance` is not of three finite numbers, or a channel is negative.
 
+    Notes
+    -----
+    `shadelab.pathtrace` sees it where rays miss everything, and shadows it; `shadelab.render` does neither.
+
     Examples
     --------
     >>> AmbientLight((0.1, 0.1, 0.2)).radiance
