@@ -38,7 +38,7 @@ def philox(counter: ArrayLike, key: ArrayLike) -> NDArray[np.uint32]:
 
     Notes
     -----
-    Passes the known-answer tests published with Random123. About 50 ns a block on one thread, most of it the passage of arrays.
+    Passes the known-answer tests published with Random123. About 50 ns a block on one thread, arrays to arrays.
 
     References
     ----------
