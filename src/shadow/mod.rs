@@ -13,10 +13,12 @@
 //! lie), `filtered` (means of moments over a part of a map), `tested` (the bounds, and lookups by any of them), `fit`
 //! (what a map's window must hold).
 
+pub mod distance_field;
 pub mod exponential_variance;
 pub(crate) mod filtered;
 #[cfg_attr(not(feature = "python"), allow(dead_code))] // the face fits, the kernels do not
 pub(crate) mod fit;
+pub mod half_plane;
 pub mod hard;
 pub(crate) mod lookup;
 pub mod moment;

@@ -1,7 +1,7 @@
 //! Shadows by rays to points on the light: the share of the light that a receiver sees, without a map.
 //!
-//! Points are Owen-scrambled Sobol' points, scrambled anew for each receiver. With normals, points count by the
-//! irradiance that they would send, so that the fraction times the unshadowed irradiance is the shadowed one (the ratio
+//! Points come from any sampler, drawn anew for each receiver (by default Owen-scrambled Sobol' points), or are one set
+//! for all, shifted by each receiver's own offset. With normals, points count by the irradiance that they would send, so that the fraction times the unshadowed irradiance is the shadowed one (the ratio
 //! estimator of E. Heitz, S. Hill, M. McGuire, *Combining Analytic Direct Illumination and Stochastic Shadows*, 2018);
 //! without, by area.
 
@@ -10,6 +10,7 @@ use crate::dispatch;
 use crate::light::Light;
 use crate::parallel::{self, Interrupted, Watch};
 use crate::real::Real;
+use crate::sampling::sampler::Sampler;
 use crate::sampling::sobol::{self, Scramble};
 use crate::shadow::lookup::at;
 use crate::simd::*;
@@ -34,10 +35,12 @@ pub enum Emitter<T> {
     Area(Light<T>),
 }
 
-pub struct Knobs<T> {
+pub struct Knobs<'a, T> {
     pub emitter: Emitter<T>,
     pub samples: usize,
-    pub seed: u64,
+    pub sampler: Sampler,
+    /// What each receiver's points are shifted by on the torus; all then share those of the first.
+    pub shifts: Option<&'a [[T; 2]]>,
     /// How far rays start off the surface along its normal, in world units.
     pub offset: T,
 }
@@ -47,6 +50,73 @@ const BATCH: usize = 1 << 10;
 /// Rays end so far before the light, as a fraction of their length, that a surface in the light's plane hides nothing.
 const SHORT_OF_LIGHT: f64 = 1e-4;
 
+/// Points of the unit square that rays are sent through.
+enum Points<'a, T> {
+    Sobol { seed: u64, points: Vec<[u32; 2]> },
+    Drawn { sampler: Sampler, samples: u32 },
+    Shifted { points: Vec<[T; 2]>, shifts: &'a [[T; 2]] },
+}
+
+impl<'a, T: Real> Points<'a, T> {
+    fn new(knobs: &Knobs<'a, T>) -> Self {
+        let samples = knobs.samples as u32;
+        if let Some(shifts) = knobs.shifts {
+            let points = (0..samples).map(|k| knobs.sampler.pair(0, k, 0)).collect();
+            return Points::Shifted { points, shifts };
+        }
+        match knobs.sampler {
+            // Worked out once; receivers differ by how they scramble them.
+            Sampler::Sobol { seed } => {
+                let columns = sobol::columns();
+                let point = |i| [sobol::sobol(i, &columns[0]), sobol::sobol(i, &columns[1])];
+                Points::Sobol { seed, points: (0..samples).map(point).collect() }
+            }
+            sampler => Points::Drawn { sampler, samples },
+        }
+    }
+
+    #[inline(always)]
+    fn count(&self) -> usize {
+        match self {
+            Points::Sobol { points, .. } => points.len(),
+            Points::Drawn { samples, .. } => *samples as usize,
+            Points::Shifted { points, .. } => points.len(),
+        }
+    }
+}
+
+/// One receiver's points.
+struct Draw<'a, T> {
+    points: &'a Points<'a, T>,
+    receiver: u64,
+    scrambles: [Scramble; 2],
+}
+
+impl<'a, T: Real> Draw<'a, T> {
+    #[inline(always)]
+    fn new(points: &'a Points<'a, T>, receiver: u64) -> Self {
+        let seed = if let Points::Sobol { seed, .. } = points { *seed } else { 0 };
+        let scrambles = [Scramble::new(seed, receiver, 0), Scramble::new(seed, receiver, 1)];
+        Draw { points, receiver, scrambles }
+    }
+
+    #[inline(always)]
+    fn at(&self, k: usize) -> [T; 2] {
+        match self.points {
+            Points::Sobol { points, .. } => {
+                let [x, y] = &self.scrambles;
+                [x.fraction(points[k][0]), y.fraction(points[k][1])]
+            }
+            Points::Drawn { sampler, .. } => sampler.pair(self.receiver, k as u32, 0),
+            Points::Shifted { points, shifts } => {
+                let shift = shifts[self.receiver as usize];
+                let (x, y) = (points[k][0] + shift[0], points[k][1] + shift[1]);
+                [x - x.floor(), y - y.floor()]
+            }
+        }
+    }
+}
+
 /// The lit fraction of every receiver. `ignore` holds the face that each lies on, -1 for none.
 pub fn ray_traced<T: Real>(
     watch: &mut dyn Watch,
@@ -54,13 +124,10 @@ pub fn ray_traced<T: Real>(
     receivers: &[[T; 3]],
     normals: Option<&[[T; 3]]>,
     ignore: Option<&[i32]>,
-    knobs: &Knobs<T>,
+    knobs: &Knobs<'_, T>,
     out: &mut [T],
 ) -> Result<(), Interrupted> {
-    let columns = sobol::columns();
-    let points: Vec<[u32; 2]> = (0..knobs.samples as u32)
-        .map(|i| [sobol::sobol(i, &columns[0]), sobol::sobol(i, &columns[1])])
-        .collect();
+    let points = Points::new(knobs);
     let piece = ((1 << 15) / knobs.samples).clamp(1, 1 << 12);
     parallel::for_each(
         watch,
@@ -86,11 +153,11 @@ fn body<T: Real, S: Simd>(
     points: &[[T; 3]],
     normals: Option<&[[T; 3]]>,
     ignore: Option<&[i32]>,
-    knobs: &Knobs<T>,
-    pattern: &[[u32; 2]],
+    knobs: &Knobs<'_, T>,
+    pattern: &Points<'_, T>,
     out: &mut [T],
 ) {
-    let room = BATCH + pattern.len();
+    let room = BATCH + pattern.count();
     let mut batch = Batch {
         rays: Vec::with_capacity(room),
         hits: vec![false; room],
@@ -142,8 +209,8 @@ fn push<T: Real>(
     point: Vec3<T>,
     normal: Option<[T; 3]>,
     face: i32,
-    knobs: &Knobs<T>,
-    pattern: &[[u32; 2]],
+    knobs: &Knobs<'_, T>,
+    pattern: &Points<'_, T>,
 ) {
     let mut origin = point;
     if let Some(n) = normal {
@@ -161,10 +228,11 @@ fn push<T: Real>(
         }
         Emitter::Rect { center, u, v } => {
             let (center, u, v) = (*center, *u, *v);
-            let (x, y) = (Scramble::new(knobs.seed, index, 0), Scramble::new(knobs.seed, index, 1));
+            let draw = Draw::new(pattern, index);
             let (half, facing) = (T::of(0.5), u.cross(v));
-            for &[a, b] in pattern {
-                let target = center + u * (x.fraction::<T>(a) - half) + v * (y.fraction::<T>(b) - half);
+            for k in 0..pattern.count() {
+                let [x, y] = draw.at(k);
+                let target = center + u * (x - half) + v * (y - half);
                 let w = weight(normal, target - origin, Some(facing));
                 if w > T::zero() {
                     batch.add(owner, to_point(origin, target, short, face), w);
@@ -172,9 +240,9 @@ fn push<T: Real>(
             }
         }
         Emitter::Area(light) => {
-            let (x, y) = (Scramble::new(knobs.seed, index, 0), Scramble::new(knobs.seed, index, 1));
-            for &[a, b] in pattern {
-                let Some(s) = light.sight(origin, [x.fraction(a), y.fraction(b)]) else { continue };
+            let draw = Draw::new(pattern, index);
+            for k in 0..pattern.count() {
+                let Some(s) = light.sight(origin, draw.at(k)) else { continue };
                 let w = match normal {
                     Some(n) => Vec3::from(n).dot(s.wi).max(T::zero()) / s.pdf,
                     None => T::one(),

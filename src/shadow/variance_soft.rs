@@ -33,7 +33,8 @@ pub type Intermediates<'a, T> = (&'a mut [T], &'a mut [T], &'a mut [T]);
 /// A share of blockers below this is none: bounds are seldom exactly 1.
 const NONE: f64 = 1e-3;
 
-/// The lit fraction of every receiver. `light` is as in [`crate::shadow::pcss`].
+/// The lit fraction of every receiver. `light` is as in [`crate::shadow::pcss`]; `search_slope` is the bias by slope of
+/// the search, where that of `granted` is the filter's.
 pub fn variance_soft<T: Real, E: Stored, const C: usize>(
     watch: &mut dyn Watch,
     map: &Map<'_, T>,
@@ -44,15 +45,16 @@ pub fn variance_soft<T: Real, E: Stored, const C: usize>(
     test: &Test<T>,
     granted: &Granted<T>,
     light: [T; 2],
+    search_slope: T,
     out: &mut [T],
     more: Option<Intermediates<'_, T>>,
 ) -> Result<(), Interrupted> {
     parallel::for_each(watch, (receivers, normals, out, more), 1 << 13, |_, (p, n, out, mut more)| {
         dispatch!(_s => for i in 0..out.len() {
             let found = if perspective {
-                one::<T, E, C, true>(map, filtered, p[i], at(n, i), test, granted, light)
+                one::<T, E, C, true>(map, filtered, p[i], at(n, i), test, granted, light, search_slope)
             } else {
-                one::<T, E, C, false>(map, filtered, p[i], at(n, i), test, granted, light)
+                one::<T, E, C, false>(map, filtered, p[i], at(n, i), test, granted, light, search_slope)
             };
             out[i] = found.lit;
             if let Some((blocker, penumbra, search)) = &mut more {
@@ -71,6 +73,7 @@ fn one<T: Real, E: Stored, const C: usize, const PERSPECTIVE: bool>(
     test: &Test<T>,
     granted: &Granted<T>,
     light: [T; 2],
+    search_slope: T,
 ) -> Soft<T> {
     let (zero, one) = (T::zero(), T::one());
     let foot = match map.foot::<PERSPECTIVE>(point, normal, granted.normal_offset) {
@@ -87,7 +90,8 @@ fn one<T: Real, E: Stored, const C: usize, const PERSPECTIVE: bool>(
     let half = [Lanes::min(half[0], limit), Lanes::min(half[1], limit)];
     let search = Lanes::max(half[0], half[1]);
 
-    let first = tested(filtered, test, granted, &foot, gain, half);
+    let searched = Granted { slope: search_slope, ..*granted };
+    let first = tested(filtered, test, &searched, &foot, gain, half);
     if first.lit > T::of(1.0 - NONE) {
         return Soft { lit: one, blocker: T::NAN, penumbra: zero, search };
     }

@@ -133,3 +133,64 @@ def test_ignored_faces_are_faces(scenes, face):
     bvh = sl.accel.BVH(p, f)
     with pytest.raises(ValueError, match="ignore_face: expected -1 or a face below 2"):
         sl.shadow.ray_traced(bvh, [0.0, -1, 0], None, scenes.rect_light(), ignore_face=face)
+
+
+SAMPLERS = ["sobol", "independent", "stratified", "latin_hypercube", "multi_jittered", "r2", "halton"]
+
+
+@pytest.mark.parametrize("sampler", SAMPLERS)
+def test_every_sampler_tends_to_the_exact_fraction(scenes, sampler):
+    bvh, light = edge_scene(scenes, np.float64)
+    rng = np.random.default_rng(4)
+    points = np.stack([rng.uniform(-0.3, 0.3, 1500), np.full(1500, 1e-6), rng.uniform(-0.2, 0.2, 1500)], -1)
+    # An edge askew to the light's sides, as most are: a second half-plane, turned.
+    exact = sl.shadow.half_plane(points, None, light, [[0, 2, 0], [0, 0, 1], [-1, 0, 0]])
+    rms = []
+    for n in (4, 16, 64, 256):
+        off = sl.shadow.ray_traced(bvh, points, None, light, n, sampler=sampler) - exact
+        rms.append(np.sqrt(np.mean(off**2)))
+        # Unbiased: the mean over receivers is off by chance alone.
+        assert abs(off.mean()) < 4 * off.std() / np.sqrt(len(off))
+    rate = np.polyfit(np.log([4, 16, 64, 256]), np.log(rms), 1)[0]
+    # Independent points: -1/2; the others stratify, and gain from it where the edge lies along a side of the light.
+    assert rate == pytest.approx(-0.5, abs=0.06) if sampler == "independent" else rate < -0.7
+    assert np.array_equal(*(sl.shadow.ray_traced(bvh, points[:9], UP, light, 8, sampler=sampler) for _ in range(2)))
+
+
+def test_offsets_shift_one_set_for_all(scenes):
+    bvh, light = edge_scene(scenes, np.float64)
+    points = np.stack([np.linspace(-0.3, 0.3, 64), np.full(64, 1e-6), np.zeros(64)], -1)
+    shifts = np.random.default_rng(1).random((64, 2))
+    lit = [sl.shadow.ray_traced(bvh, points, None, light, 16, sampler="r2", offsets=s) for s in (shifts, shifts + 3)]
+    np.testing.assert_allclose(*lit, atol=1e-12)
+    # One place, two shifts: another answer; one shift: the same answer everywhere.
+    same = np.tile(points[40], (64, 1))
+    assert np.ptp(sl.shadow.ray_traced(bvh, same, None, light, 4, offsets=shifts)) > 0
+    assert np.ptp(sl.shadow.ray_traced(bvh, same, None, light, 4, offsets=shifts[0])) == 0
+
+
+def test_blue_noise_shifts_spread_the_error(scenes):
+    """What is left after a blur of 3 × 3 pixels is less than with offsets at random."""
+    bvh, light = edge_scene(scenes, np.float64)
+    x, z = np.meshgrid(np.linspace(-0.2, 0.2, 64), np.linspace(-0.2, 0.2, 64))
+    points = np.stack([x, 0 * x + 1e-6, z], -1)
+    exact = sl.shadow.half_plane(points, None, light, [[0, 2, 0], [0, 0, 1], [-1, 0, 0]])
+    left = {}
+    for name, tiles in (
+        ("blue", [sl.sampling.blue_noise_mask(64, seed=s) for s in (1, 2)]),
+        ("white", np.random.default_rng(2).random((2, 64, 64))),
+    ):
+        off = sl.shadow.ray_traced(bvh, points, None, light, 1, offsets=np.stack(list(tiles), -1)) - exact
+        blurred = sum(np.roll(off, (i, j), (0, 1)) for i in (-1, 0, 1) for j in (-1, 0, 1)) / 9
+        left[name] = blurred[2:-2, 2:-2].std()
+    assert left["blue"] < 0.7 * left["white"]
+
+
+def test_samplers_and_offsets_are_checked(scenes):
+    bvh, light = edge_scene(scenes, np.float32)
+    with pytest.raises(ValueError, match="sampler: expected one of"):
+        sl.shadow.ray_traced(bvh, [0, 0, 0], None, light, sampler="best")
+    with pytest.raises(ValueError, match="offsets: expected shape"):
+        sl.shadow.ray_traced(bvh, [[0, 0, 0]], None, light, offsets=np.zeros((3, 2)))
+    with pytest.raises(ValueError, match="offsets: expected finite"):
+        sl.shadow.ray_traced(bvh, [[0, 0, 0]], None, light, offsets=[np.nan, 0])

@@ -1,15 +1,18 @@
 """Shadow maps and their filters: every function returns the lit fraction of a light, in [0, 1].
 
 A `ShadowMap` holds the depth of a scene as a light sees it, linear along the light's axis. `hard` compares once, `pcf`
-averages comparisons over a fixed width, `pcss` over the width that the blockers call for; `ray_traced` needs no map.
+averages comparisons over a fixed width, `pcss` over the width that the blockers call for; `ray_traced` needs no map,
+`distance_field` asks how far things are, and `half_plane` is exact.
 A `MomentMap` holds means of powers or exponentials of depth, which are filtered before the lookup: `variance`,
 `exponential_variance` and `moment` read one texel whatever the width, `variance_soft` two.
 """
 
-from . import bounds, compared, costs, filtered, filtered_soft, maps, moments, rays, soft
+from . import bounds, closed, compared, costs, fields, filtered, filtered_soft, maps, moments, rays, soft
 from .bounds import *  # noqa: F403
+from .closed import *  # noqa: F403
 from .compared import *  # noqa: F403
 from .costs import *  # noqa: F403
+from .fields import *  # noqa: F403
 from .filtered import *  # noqa: F403
 from .filtered_soft import *  # noqa: F403
 from .maps import *  # noqa: F403
@@ -21,8 +24,10 @@ from .soft import *  # noqa: F403
 
 __all__: list[str] = []
 __all__ += bounds.__all__
+__all__ += closed.__all__
 __all__ += compared.__all__
 __all__ += costs.__all__
+__all__ += fields.__all__
 __all__ += filtered.__all__
 __all__ += filtered_soft.__all__
 __all__ += maps.__all__

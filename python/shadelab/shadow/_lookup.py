@@ -38,7 +38,13 @@ def _receivers(
     shadow_map: ShadowMap, receivers: ArrayLike, normals: ArrayLike | None
 ) -> tuple[tuple[int, ...], Floats, Floats | None]:
     """The batch's shape, points and normals as (n, 3) in the map's precision."""
-    dtype = shadow_map.depth.dtype
+    return _points(shadow_map.depth.dtype, receivers, normals)
+
+
+def _points(
+    dtype: Any, receivers: ArrayLike, normals: ArrayLike | None
+) -> tuple[tuple[int, ...], Floats, Floats | None]:
+    """The batch's shape, points and normals as (n, 3)."""
     named = {"receivers": (_arrays.vectors("receivers", receivers, 3, dtype), 1)}
     if normals is not None:
         named["normals"] = (_arrays.vectors("normals", normals, 3, dtype), 1)

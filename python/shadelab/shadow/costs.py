@@ -20,7 +20,7 @@ class Cost(NamedTuple):
     """The most bytes read from the map."""
 
 
-_COMPARED = ("hard", "pcf", "pcss", "ray_traced")
+_COMPARED = ("hard", "pcf", "pcss", "ray_traced", "distance_field")
 _FILTERED = ("variance", "exponential_variance", "moment", "variance_soft")
 # Texels of one lookup by the map's filter: between four, between four of two levels, four nodes of a table at four
 # corners.
@@ -32,8 +32,8 @@ def cost(technique: str, *, itemsize: int = 4, **knobs: Any) -> Cost:
 
     Parameters
     ----------
-    technique : {"hard", "pcf", "pcss", "ray_traced", "variance", "exponential_variance", "moment", "variance_soft"}
-        The function's name.
+    technique : {"hard", "pcf", "pcss", "ray_traced", "distance_field", "variance", ...}
+        The function's name: of a lookup of this chapter.
     itemsize : int
         Bytes of a number in a texel.
     **knobs
@@ -63,6 +63,9 @@ def cost(technique: str, *, itemsize: int = 4, **knobs: Any) -> Cost:
         return _of_moments(technique, itemsize, knobs)
     if technique == "hard":
         reads = 1
+    elif technique == "distance_field":
+        # Eight nodes a step; the kernel takes some tens of steps where there is something to find.
+        reads = 8 * int(knobs.get("max_steps", 128))
     elif technique == "pcf":
         reads = int(knobs.get("samples", 16)) * (4 if knobs.get("bilinear") else 1)
     else:

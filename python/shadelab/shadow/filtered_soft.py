@@ -8,6 +8,7 @@ from typing import Literal, overload
 import numpy as np
 from numpy.typing import ArrayLike
 
+from .. import _arrays
 from .._arrays import Floats
 from .._kernels import shadow as _kernels
 from ._lookup import _receivers, _result
@@ -33,6 +34,7 @@ def variance_soft(
     light_bleeding: float = ...,
     bias: float = ...,
     slope_bias: float = ...,
+    search_slope_bias: float = ...,
     normal_offset: float = ...,
     full_output: Literal[False] = ...,
     out: Floats | None = ...,
@@ -50,6 +52,7 @@ def variance_soft(
     light_bleeding: float = ...,
     bias: float = ...,
     slope_bias: float = ...,
+    search_slope_bias: float = ...,
     normal_offset: float = ...,
     full_output: Literal[True],
     out: Floats | None = ...,
@@ -65,7 +68,8 @@ def variance_soft(
     moment_bias: float | None = None,
     light_bleeding: float = 0.0,
     bias: float = 0.0,
-    slope_bias: float = 0.0,
+    slope_bias: float = 0.5,
+    search_slope_bias: float = 0.0,
     normal_offset: float = 0.0,
     full_output: bool = False,
     out: Floats | None = None,
@@ -79,8 +83,12 @@ def variance_soft(
         themselves; two, if what does not block lies at the receiver's depth.
     receivers, normals, light_size, full_output, out
         As in `pcss`.
-    min_variance, light_bleeding, bias, slope_bias, normal_offset
+    min_variance, light_bleeding, bias, normal_offset
         As in `variance`.
+    slope_bias, search_slope_bias : float
+        Half sides of the filter, and of the search: a blocker must be nearer by the depth that the receiver's plane
+        gains over them. Half of the filter's keeps slopes free of acne; over the search, which is wide, the same would
+        drop the shadows of all that is near.
     method, moment_bias
         As in `moment`.
 
@@ -101,9 +109,9 @@ def variance_soft(
     Exact for one flat blocker and a flat receiver parallel to the light, but for the shape of mips; otherwise light
     bleeds where bounds are loose (see `variance`, `moment`), and where the search meets blockers at several depths.
 
-    A lit receiver that slopes within a wide search is grey with four moments, which find it among its own blockers;
-    ``slope_bias=1`` clears that, and drops the shadows of blockers that are nearer than the slope's gain over the
-    search.
+    A receiver that slopes within a wide search counts among its own blockers: what they hide looks nearer than it is,
+    and penumbrae are too narrow there. Of two moments the bound is looser than that of four wherever blockers lie at
+    more than one depth: much light then bleeds.
 
     References
     ----------
@@ -140,11 +148,12 @@ def variance_soft(
             raise ValueError(f"light_size: expected an angle below pi, got {max(sides):g}")
         sides = 2.0 * math.tan(sides[0] / 2.0), 2.0 * math.tan(sides[1] / 2.0)
     asked = _asked(m, min_variance, method, moment_bias)
+    searched = _arrays.number("search_slope_bias", search_slope_bias, 0.0)
     granted = _bias(m, bias, slope_bias, normal_offset, light_bleeding)
     shape, points, n = _receivers(shadow_map, receivers, normals)
     result, flat = _result(out, shape, points.dtype)
     more = [np.empty_like(flat) for _ in range(3)] if full_output else None
     store = (m.moments, m._levels(), m.filter == "summed_area", m.reduce, m._range())
-    geometry = shadow_map._geometry()
-    _kernels.filtered(shadow_map.depth, geometry, perspective, store, points, n, asked, granted, sides, flat, more)
+    geometry, width = shadow_map._geometry(), (*sides, searched)
+    _kernels.filtered(shadow_map.depth, geometry, perspective, store, points, n, asked, granted, width, flat, more)
     return result if more is None else PCSS(result, *(a.reshape(shape) for a in more))

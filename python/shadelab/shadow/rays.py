@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable
+from typing import Literal, TypeAlias, get_args
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -22,10 +23,12 @@ from ..light import (
     SpotLight,
 )
 from ..light.kinds import Light, _table
-from ._lookup import _MAX_SAMPLES, _result
+from ._lookup import _MAX_SAMPLES, _points, _result
 from .maps import _unit
 
 __all__ = ["ray_traced"]
+
+Sampler: TypeAlias = Literal["sobol", "independent", "stratified", "latin_hypercube", "multi_jittered", "r2", "halton"]
 
 
 def ray_traced(
@@ -35,6 +38,8 @@ def ray_traced(
     light: Light,
     samples: int = 16,
     *,
+    sampler: Sampler = "sobol",
+    offsets: ArrayLike | None = None,
     seed: int = 0,
     ignore_face: ArrayLike | None = None,
     progress: bool | Callable[[int, int], object] | None = None,
@@ -57,6 +62,12 @@ def ray_traced(
         counts, not its cone; to ambient light rays go in all directions.
     samples : int
         Rays to a light with an area, at most 4096; powers of two are most even.
+    sampler : {"sobol", "independent", "stratified", "latin_hypercube", "multi_jittered", "r2", "halton"}
+        The point set over the light, drawn for each receiver anew; as `pathtrace.path_trace` takes it.
+    offsets : array_like, shape (..., 2), optional
+        With them all receivers share one point set, each shifted by its own offset modulo 1. From two tiles of
+        `sampling.blue_noise_mask`, looked up by pixel, the noise of neighbours differs as much as it can, and the eye
+        averages it.
     seed : int
         Scrambles the points of the light, for each receiver anew.
     ignore_face : array_like of int, shape (...), optional
@@ -80,9 +91,10 @@ def ray_traced(
     Notes
     -----
     Tends to the exact fraction as `samples` grows: the error of a penumbra falls about as samples^(-3/4), since a
-    shadow edge across the stratified light is all that varies. With normals the estimate is a ratio of two sums, whose
-    bias falls as 1 / samples; it is exact, without noise, where the light is wholly seen or hidden. Surfaces nearer to
-    the light than 1e-4 of the distance hide nothing. Cost: `samples` shadow rays.
+    shadow edge across the stratified light is all that varies; with "independent" points as samples^(-1/2). With
+    normals the estimate is a ratio of two sums, whose bias falls as 1 / samples; it is exact, without noise, where the
+    light is wholly seen or hidden. Surfaces nearer to the light than 1e-4 of the distance hide nothing. Cost: `samples`
+    shadow rays.
 
     References
     ----------
@@ -102,10 +114,7 @@ def ray_traced(
         raise TypeError(f"bvh: expected a BVH, got {type(bvh).__name__}")
     n = _arrays.count("samples", samples, 1, _MAX_SAMPLES)
     key = _arrays.count("seed", seed, 0, 2**64 - 1)
-    named = {"receivers": (_arrays.vectors("receivers", receivers, 3, bvh.dtype), 1)}
-    if normals is not None:
-        named["normals"] = (_arrays.vectors("normals", normals, 3, bvh.dtype), 1)
-    shape, flat = _arrays.broadcast(named)
+    shape, points, normal = _points(bvh.dtype, receivers, normals)
     faces = None
     if ignore_face is not None:
         ids = accel._rays.ignored("ignore_face", ignore_face, "a face", len(bvh._faces))
@@ -113,6 +122,16 @@ def ray_traced(
             faces = np.ascontiguousarray(np.broadcast_to(ids, shape), np.int32).reshape(-1)
         except ValueError:
             raise ValueError(f"ignore_face: expected shape {shape}, got {ids.shape}") from None
+    _arrays.choice("sampler", sampler, get_args(Sampler))
+    shifts = None
+    if offsets is not None:
+        given = _arrays.vectors("offsets", offsets, 2, bvh.dtype)
+        if not np.isfinite(given).all():
+            raise ValueError("offsets: expected finite numbers")
+        try:
+            shifts = np.ascontiguousarray(np.broadcast_to(given, (*shape, 2))).reshape(-1, 2)
+        except ValueError:
+            raise ValueError(f"offsets: expected shape {(*shape, 2)}, got {given.shape}") from None
     zero = [0.0, 0.0, 0.0]
     table: NDArray[np.float64] | None = None
     if isinstance(light, RectLight):
@@ -131,6 +150,6 @@ def ray_traced(
     offset = 32.0 * float(np.finfo(bvh.dtype).eps) * reach
     result, flat_out = _result(out, shape, bvh.dtype)
     watch = _arrays.progress_callback(progress, "shadow rays")
-    normal = flat[1] if normals is not None else None
-    _kernels.ray_traced(bvh._tree, flat[0], normal, faces, (kind, vectors, table), n, key, offset, watch, flat_out)
+    target = (kind, vectors, table)
+    _kernels.ray_traced(bvh._tree, points, normal, faces, target, n, (sampler, key), shifts, offset, watch, flat_out)
     return result

@@ -1,5 +1,7 @@
 //! Bindings of `shadow`: what lookups share is here, a file for each of the faces.
 
+mod closed;
+mod field;
 mod maps;
 mod moments;
 mod compared;
@@ -60,9 +62,13 @@ use by_projection;
 #[pymodule]
 pub mod shadow {
     #[pymodule_export]
+    use super::closed::half_plane;
+    #[pymodule_export]
     use super::compared::hard;
     #[pymodule_export]
     use super::compared::pcf;
+    #[pymodule_export]
+    use super::field::distance_field;
     #[pymodule_export]
     use super::maps::shadow_map;
     #[pymodule_export]

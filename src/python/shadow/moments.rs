@@ -134,11 +134,11 @@ fn granted<T: Real>([constant, slope, normal_offset, bleeding]: Bias) -> Granted
     }
 }
 
-/// A fixed half side in texels, or the sides of a light.
+/// A fixed half side in texels, or the sides of a light and the search's bias by slope.
 #[derive(FromPyObject)]
 pub enum Width {
     Half(f64),
-    Light([f64; 2]),
+    Light([f64; 3]),
 }
 
 /// Optional arrays: moments and depths, or blocker depth, penumbra and search.
@@ -220,14 +220,14 @@ impl<'py> Call<'_, 'py> {
                     lookup(watch, &map, perspective, &filtered, p, n, &test, &granted, half, out, more)
                 })
             }
-            Width::Light(light) => {
+            Width::Light([u, v, slope]) => {
                 let more = match &mut more[..] {
                     [a, b, c] => Some((a.slice()?, b.slice()?, c.slice()?)),
                     _ => None,
                 };
-                let light = light.map(T::of);
+                let (light, slope) = ([u, v].map(T::of), T::of(slope));
                 run(py, None, |watch| {
-                    soft(watch, &map, perspective, &filtered, p, n, &test, &granted, light, out, more)
+                    soft(watch, &map, perspective, &filtered, p, n, &test, &granted, light, slope, out, more)
                 })
             }
         }

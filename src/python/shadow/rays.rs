@@ -5,7 +5,9 @@ use crate::python::array::{In, Out, run, unknown};
 use crate::python::light::one_light;
 use crate::real;
 use crate::real::Real;
+use crate::sampling::sampler::Sampler;
 use crate::vec::Vec3;
+use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
 
 #[pyfunction]
@@ -17,7 +19,8 @@ pub fn ray_traced(
     ignore: Option<&Bound<'_, PyAny>>,
     light: (&str, [[f64; 3]; 3], Option<Bound<'_, PyAny>>),
     samples: usize,
-    seed: u64,
+    sampler: (&str, u64),
+    shifts: Option<&Bound<'_, PyAny>>,
     offset: f64,
     progress: Option<Py<PyAny>>,
     out: &Bound<'_, PyAny>,
@@ -36,7 +39,14 @@ pub fn ray_traced(
             "directional" => Emitter::Directional { towards: a },
             _ => Emitter::Point { position: a },
         };
-        let knobs = Knobs { emitter, samples, seed, offset: T::of(offset) };
+        let sampler = Sampler::new(sampler.0, sampler.1, samples as u32)
+            .ok_or_else(|| unknown("sampler", sampler.0))?;
+        let shifts = shifts.map(|s| In::<T>::of("offsets", s)).transpose()?;
+        let shifts = shifts.as_ref().map(In::items).transpose()?;
+        if shifts.is_some_and(|s| s.len() != points.items().map_or(0, <[[T; 3]]>::len)) {
+            return Err(PyValueError::new_err("offsets: expected one for each receiver"));
+        }
+        let knobs = Knobs { emitter, samples, sampler, shifts, offset: T::of(offset) };
         let tree = tree.get().of::<T>()?.clone();
         let (p, n) = (points.items()?, normals.as_ref().map(In::items).transpose()?);
         let (ignore, out) = (ignore.as_ref().map(In::slice).transpose()?, out.slice()?);
