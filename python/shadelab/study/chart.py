@@ -174,8 +174,9 @@ def svg(study: Study, width: int, height: int, choice: Choice | None = None) -> 
     )
     line = " ".join(f"{x(a):.1f},{y(b):.1f}" for a, b in _stairs(points))
     out.append(f'<polyline class="front" points="{line}"/>')
+    price = study.price()
     for p in sorted(points, key=lambda p: p.on_front):
-        out.append(_mark(p, x, y, choice, study.word))
+        out.append(_mark(p, x, y, choice, study.word, price))
     out += _names(points, x, y, width - right)
     out.append("</svg>")
     return "".join(out)
@@ -199,11 +200,11 @@ def _names(points: list[_Point], x: _Axis, y: _Axis, end: float) -> list[str]:
     return out
 
 
-def _mark(p: _Point, x: _Axis, y: _Axis, choice: Choice | None, word: str) -> str:
+def _mark(p: _Point, x: _Axis, y: _Axis, choice: Choice | None, word: str, unit: tuple[str, float]) -> str:
     """A point with its intervals, a shape for its technique, and a title that a pointer shows."""
     color = COLORS[p.technique % len(COLORS)]
     s, px, py = p.summary, x(p.cost.value), y(p.error)
-    title = f"{s.setting}: {word} {figure_text(s.error.value)}, {figure_text(s.ms.value)} ms"
+    title = f"{s.setting}: {word} {figure_text(s.error.value)}, {figure_text(s.ms.value * unit[1])} {unit[0]}"
     bars = (
         f'<path d="M{x(p.cost.low):.1f} {py:.1f}H{x(p.cost.high):.1f}M{px:.1f} {y(p.low):.1f}V{y(p.high):.1f}" '
         f'stroke="{color}" fill="none"/>'

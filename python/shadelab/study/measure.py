@@ -5,7 +5,7 @@ from __future__ import annotations
 import gc
 import math
 from collections.abc import Callable, Iterable, Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Any
 
 import numpy as np
@@ -20,6 +20,7 @@ from .machine import machine
 from .question import Candidate, Case, External, MonteCarlo, Question
 from .records import CaseRecord, Record
 from .results import Study
+from .statistics import Interval
 
 __all__ = ["run"]
 
@@ -265,6 +266,7 @@ def _run(plan: _Plan, cases: list[Case], progress: Any) -> Study:
             "reference_seconds": plan.reference_seconds,
             "confidence": statistics.CONFIDENCE,
             "element": question.element,
+            "cost": question.cost,
         },
         {name: c.about for name, c in known.items()} | {e.title: "A picture from elsewhere." for e in plan.external},
         {name: (f.__doc__ or "").strip() for name, f in question.also.items()},
@@ -320,7 +322,7 @@ def _measure(
     records = [judge.record(s, case) for s in settings]
     pictures.keep(case, judge, settings)
     _time(plan, settings, inputs, case.seed, steps)
-    records = [with_times(r, s, inputs) for r, s in zip(records, settings, strict=True)]
+    records = [_priced(with_times(r, s, inputs), question) for r, s in zip(records, settings, strict=True)]
     records += [r for e in plan.external if (r := external_record(judge, e, case, is_first)) is not None]
     steps.step(len(plan.settings) - len(settings))
     plan_text, plan_html = _plan_of(question, case)
@@ -342,6 +344,15 @@ def _measure(
         judge.mask.size,
     )
     return records, about
+
+
+def _priced(record: Record, question: Question) -> Record:
+    """A record whose cost is a counter, where the question asks for that; the time becomes a counter."""
+    if question.cost == "time":
+        return record
+    price = float(record.counters[question.cost])
+    counters = {k: v for k, v in record.counters.items() if k != question.cost} | {"ms": record.ms.value}
+    return replace(record, ms=Interval(price, price, price), spread=0.0, prepare_ms=0.0, counters=counters)
 
 
 def _in_double(case: Case) -> Case:

@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING
 from . import chart
 from .chart import COLORS, marker_path
 from .records import Choice, figure_text
+from .statistics import Interval
 from .tables import cases_table, html_table
 
 if TYPE_CHECKING:
@@ -107,6 +108,11 @@ def _text(text: object) -> str:
     return html.escape(str(text))
 
 
+def _interval(unit: tuple[str, float], t: Interval) -> str:
+    low, middle, high = (figure_text(v * unit[1]) for v in (t.low, t.value, t.high))
+    return f"{middle} {unit[0]} ({low} … {high})" if t.low < t.high else f"{middle} {unit[0]}"
+
+
 def _choice_box(choice: Choice | None, refusal: str) -> str:
     if refusal:
         return f'<p class="choice-box none">{_text(refusal[:1].upper() + refusal[1:])}.</p>'
@@ -117,7 +123,7 @@ def _choice_box(choice: Choice | None, refusal: str) -> str:
     return (
         f'<div class="choice-box">For {_text(choice.asked)}:<br><b>{_text(choice.setting)}</b><br>'
         f"error {figure_text(e.value)} ({figure_text(e.low)} … {figure_text(e.high)}){where}, "
-        f"{figure_text(t.value)} ms ({figure_text(t.low)} … {figure_text(t.high)})<br>"
+        f"{_interval(choice.unit, t)}<br>"
         f"<small>{_text(choice.metric)}, over: {_text(choice.mask)}</small></div>"
     )
 
@@ -125,8 +131,9 @@ def _choice_box(choice: Choice | None, refusal: str) -> str:
 def _front(study: Study, choice: Choice | None) -> str:
     ring = " The ring marks the choice." if choice is not None else ""
     worst = f", each with its worst over {len(study.cases)} cases" if len(study.cases) > 1 else ""
+    axis = "time" if study.settings.get("cost", "time") == "time" else study.settings["cost"]
     return (
-        '<h2 id="front">Error against time</h2>'
+        f'<h2 id="front">Error against {_text(axis)}</h2>'
         f"<p>{_text(study.metric['name'])}, over {_text(study.mask['name'])}{worst}. Left and low is better. Bars are "
         f"95 % intervals; pale settings are beaten by another beyond confidence in both; beside the others stand their "
         f"knobs.{ring}</p>"
@@ -149,9 +156,11 @@ def _legend(study: Study) -> str:
 def _figures(study: Study, choice: Choice | None) -> str:
     chosen = (choice.technique, choice.knobs) if choice is not None else None
     threads, cpu, unit = study.machine["threads"], study.machine["cpu"], study.cost_unit()
+    timed = study.settings.get("cost", "time") == "time"
+    shown = f"<b>{unit.short}</b>: {unit.long}" + ("" if timed else "; <b>ms</b>: milliseconds a frame")
     return (
         '<h2 id="figures">Figures</h2>'
-        f"<p>Cheapest first; ★ is on the front. <b>{unit.short}</b>: {unit.long}, median, on {_text(threads)} threads "
+        f"<p>Cheapest first; ★ is on the front. {shown}, median, on {_text(threads)} threads "
         f"of {_text(cpu)}, preparation included. Counters (taps, rays, bytes) carry to other machines; times do not: "
         "<b>ranks may differ on a GPU</b>.</p>"
         f'<div class="scroll">{html_table(study, chosen, "cost")}</div>{_causes(study, chosen)}'

@@ -248,6 +248,9 @@ class Question:
         Whether errors can be split by cause; False where what is judged is no answer but a price.
     max_error : float
         The bound that the command line asks for unless told otherwise.
+    cost : str
+        What stands against the error: "time", or the name of a counter such as "bytes"; the time is then one of the
+        counters.
     element : str
         What an answer is made of. "pixel": it is a picture, and its time is that of a frame. Anything else ("ray"):
         times are shown in nanoseconds an element; answers may still be laid out as pictures.
@@ -270,6 +273,7 @@ class Question:
     causes: bool = True
     max_error: float = 0.02
     element: str = "pixel"
+    cost: str = "time"
 
     def __post_init__(self) -> None:
         if isinstance(self.reference, MonteCarlo) and self.metric.aggregate != "rms":

@@ -190,6 +190,7 @@ class Choice:
     error_case: str
     asked: str
     cases: int
+    unit: tuple[str, float] = ("ms", 1.0)
 
     @property
     def setting(self) -> str:
@@ -199,9 +200,11 @@ class Choice:
     def __str__(self) -> str:
         e, t = self.error_interval, self.ms_interval
         where = f"worst of {self.cases} cases: {self.error_case}" if self.cases > 1 else f"case: {self.error_case}"
+        low, value, high = (figure_text(v * self.unit[1]) for v in (t.low, t.value, t.high))
+        price = f"{value} {self.unit[0]}"
         return (
             f"{self.setting}: error {figure_text(e.value)} [{figure_text(e.low)}, {figure_text(e.high)}], "
-            f"{figure_text(t.value)} ms [{figure_text(t.low)}, {figure_text(t.high)}] "
+            f"{price} [{low}, {high}] "
             f"({where}; {self.asked}; metric: {self.metric}; mask: {self.mask})"
         )
 

@@ -30,10 +30,10 @@ FEW = 8
 
 
 class CostUnit(NamedTuple):
-    """How a study shows times."""
+    """How a study shows what its techniques cost."""
 
     per_ms: float
-    """Times in milliseconds times this are in the unit."""
+    """Costs as recorded (times in milliseconds) times this are in the unit."""
     short: str
     """A column's head: "ms"."""
     long: str
@@ -177,7 +177,7 @@ class Study:
             if able:
                 within = [s for s in able if budget_ms is None or s.ms.high <= budget_ms]
                 near = min(within, key=lambda s: s.error.high) if within else min(able, key=lambda s: s.ms.high)
-            raise NothingQualifies(_nothing(asked, near), near)
+            raise NothingQualifies(_nothing(asked, near, self.price()), near)
         by_error = max_error is None
         best = min(good, key=lambda s: (s.error.value, s.ms.value) if by_error else (s.ms.value, s.error.value))
         return Choice(
@@ -192,6 +192,7 @@ class Study:
             best.error_case,
             asked,
             best.cases,
+            self.price(),
         )
 
     def _pooled(self) -> list[tuple[Summary, NDArray[np.float64]]]:
@@ -249,8 +250,18 @@ class Study:
         """What the judged figure is called: "error", or the name of a price."""
         return self.metric.get("word", "error")
 
+    def price(self) -> tuple[str, float]:
+        """The unit of a whole answer's cost, and what costs as recorded are multiplied by to be in it."""
+        if self.settings.get("cost", "time") == "time":
+            return "ms", 1.0
+        unit = self.cost_unit()
+        return unit.short, unit.per_ms
+
     def cost_unit(self) -> CostUnit:
-        """How times are shown: milliseconds a frame, or nanoseconds an element where answers are no pictures."""
+        """How costs are shown: in milliseconds a frame, nanoseconds an element of what is no picture, or megabytes."""
+        cost = self.settings.get("cost", "time")
+        if cost != "time":
+            return CostUnit(1e-6, "MB", "megabytes") if cost == "bytes" else CostUnit(1.0, cost, cost)
         element, counts = self.settings.get("element", "pixel"), {c.elements for c in self.cases}
         if element == "pixel" or len(counts) != 1 or 0 in counts:
             return CostUnit(1.0, "ms", "milliseconds a frame")
@@ -386,13 +397,13 @@ class Study:
         return path
 
 
-def _nothing(asked: str, near: Summary | None) -> str:
+def _nothing(asked: str, near: Summary | None, unit: tuple[str, float]) -> str:
     if near is None:
         return f"nothing was measured in all cases, so nothing keeps {asked}"
     return (
         f"nothing keeps {asked} (confidence {statistics.CONFIDENCE:.0%}); the nearest is {near.setting}: error "
-        f"{figure_text(near.error.value)} (up to {figure_text(near.error.high)}) in {figure_text(near.ms.value)} ms "
-        f"(up to {figure_text(near.ms.high)})"
+        f"{figure_text(near.error.value)} (up to {figure_text(near.error.high)}) in "
+        f"{figure_text(near.ms.value * unit[1])} {unit[0]} (up to {figure_text(near.ms.high * unit[1])})"
     )
 
 

@@ -37,7 +37,7 @@ def _rows(study: Study, part: str = "") -> tuple[list[str], list[tuple[Summary, 
     also, counters = _columns(study)
     front = {s.setting for s in study.front()}
     many = len(study.cases) > 1
-    unit = study.cost_unit()
+    unit, timed = study.cost_unit(), study.settings.get("cost", "time") == "time"
     heads = _chosen(
         part,
         [study.word, "95 %"],
@@ -45,7 +45,7 @@ def _rows(study: Study, part: str = "") -> tuple[list[str], list[tuple[Summary, 
         ["least"] if many else [],
         ["bias", "noise", "precision", "whole frame"],
         also,
-        [unit.short, "± MAD", "prepare"],
+        [unit.short, "± MAD", "prepare"] if timed else [unit.short],
         counters,
     )
     rows = []
@@ -60,7 +60,7 @@ def _rows(study: Study, part: str = "") -> tuple[list[str], list[tuple[Summary, 
             [figure_text(s.best_error)] if many else [],
             [figure_text(v) for v in (s.bias, s.noise, s.precision, s.frame_error)],
             [figure_text(s.also.get(k)) for k in also],
-            [figure_text(v * unit.per_ms) for v in (s.ms.value, s.spread, s.prepare_ms)],
+            [figure_text(v * unit.per_ms) for v in ((s.ms.value, s.spread, s.prepare_ms) if timed else (s.ms.value,))],
             [counter_text(s.counters[k]) if k in s.counters else "–" for k in counters],
         )
         rows.append((s, s.setting in front, [s.setting, *cells]))
@@ -89,9 +89,15 @@ def _legend(study: Study) -> list[str]:
     m = study.machine
     worst = f"worst of {len(study.cases)} cases" if len(study.cases) > 1 else study.cases[0].name if study.cases else ""
     unit = f" ({study.metric['unit']})" if study.metric["unit"] else ""
+    price = study.cost_unit()
+    if study.settings.get("cost", "time") != "time":
+        return [
+            f"{study.word}: {study.metric['name']}{unit}, over: {study.mask['name']}; {worst}",
+            f"{price.short}: {price.long}; ms: median, preparation included, on {m['threads']} threads of {m['cpu']}",
+        ]
     return [
         f"{study.word}: {study.metric['name']}{unit}, over: {study.mask['name']}; {worst}",
-        f"{study.cost_unit().short}: median, preparation included, on {m['threads']} threads of {m['cpu']} "
+        f"{price.short}: median, preparation included, on {m['threads']} threads of {m['cpu']} "
         f"({m['simd']}); ranks may differ on a GPU",
     ]
 

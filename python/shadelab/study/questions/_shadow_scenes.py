@@ -79,12 +79,25 @@ def large_penumbra() -> Scene:
     )
 
 
+def long_view() -> Scene:
+    """A road of posts from before the camera to 60 m away: one map holds texels for near and far alike."""
+    post, slab = mesh.box((0.3, 1.6, 0.3)), mesh.box((1.2, 0.3, 0.4))
+    places = np.geomspace(2.0, 60.0, 14)
+    things = [_at(post, 1.2 * side, 0.8, -float(z), 0.3 * side) for z in places for side in (-1.0, 1.0)]
+    things += [_at(slab, 0.0, 0.15, -float(z) - 0.6, 0.5) for z in places[::2]]
+    light = _light((-30.0, 36.0, 4.0), 1.6, (0.0, 0.0, -24.0))
+    camera = Camera((0.3, 1.5, 1.5), (0.0, 0.9, -6.0), fov_y=0.8)
+    ground = Instance(mesh.plane(140.0), transform.translate([0.0, 0.0, -40.0]))
+    return Scene([ground, *things], lights=(light,), camera=camera)
+
+
 SCENES: Mapping[str, Callable[[], Scene]] = {
     "default": scene.default,
     "contact": contact,
     "thin fence": thin_fence,
     "two depths": two_depths,
     "large penumbra": large_penumbra,
+    "long view": long_view,
 }
 """The scenes by name."""
 

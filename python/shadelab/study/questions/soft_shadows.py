@@ -235,7 +235,7 @@ def _counters(technique: str) -> Any:
             size = (
                 8 if knobs.get("filter") == "summed_area" else 2 if knobs.get("bits") == 16 else inputs.points.itemsize
             )
-            texels = -((-resolution // knobs.get("reduce", 1)) ** 2)
+            texels = (-(-resolution // knobs.get("reduce", 1))) ** 2
             resident += round(lights * texels * channels * size * (4 / 3 if knobs.get("filter") == "mip" else 1))
         return {"taps/px": cost.texel_reads * lights, "rays/px": cost.rays * lights, "bytes": resident}
 

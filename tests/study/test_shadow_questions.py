@@ -1,0 +1,100 @@
+"""Questions of shadow maps: aliasing, bias and memory; their masks and prices, and what each must find."""
+
+import csv
+
+import numpy as np
+import pytest
+from shadelab import study
+from shadelab.light import PointLight
+from shadelab.study.questions import _visibility, shadow_aliasing, shadow_bias, shadow_memory
+
+SIZE = (96, 54)
+FAST = {"size": SIZE, "rounds": 3, "patience": 0.0, "cache": False}
+
+
+def by_setting(result, technique, case=None):
+    return {
+        tuple(r.knobs.values()): r
+        for r in result.records
+        if r.technique == technique and case in (None, r.scene, r.view)
+    }
+
+
+@pytest.mark.parametrize("module", [shadow_aliasing, shadow_bias, shadow_memory])
+def test_five_scenes_that_break_someone(module):
+    assert {"contact", "two depths", "thin fence", "large penumbra", "long view"} <= set(module.question().scenes)
+
+
+def test_aliasing_falls_with_resolution_and_is_worse_near():
+    result = study.run("shadow aliasing", "contact", **FAST)
+    for view in ("near", "far"):
+        hard = by_setting(result, "hard", view)
+        values = [hard[(n,)].error.value for n in (256, 1024, 4096)]
+        # Errors of outlines are of a texel's size: the share falls by four, its root by two, for each.
+        assert values[0] > 1.4 * values[1] > 1.4 * values[2]
+    assert hard[(1024,)].counters["bytes"] == 4 * 1024**2
+
+
+def test_edges_are_where_the_exact_shadow_steps():
+    scene = _visibility.BREAKING["contact"]()
+    case = study.Case("contact", "", scene, scene.camera, SIZE, np.dtype(np.float32), 0)
+    inputs = _visibility.pointlike(case)
+    assert all(isinstance(l, PointLight) and l.position == scene.lights[0].center for l in inputs.lights)
+    exact = _visibility.traced(inputs)
+    mask = _visibility.edges(exact, inputs)
+    assert set(np.unique(exact)) == {0, 1} and 0.02 < mask.mean() < 0.4
+    assert not mask[~inputs.covered].any()
+    assert not _visibility.edges(np.ones_like(exact), inputs).any()
+
+
+def test_bias_trades_acne_for_detachment():
+    result = study.run("shadow bias", "thin fence", **FAST)
+    none, constant = by_setting(result, "none"), by_setting(result, "constant")
+    offset, plane = by_setting(result, "normal offset"), by_setting(result, "receiver plane")
+    (bare,) = none.values()
+    assert bare.also["acne %"] > 30
+    sizes = [constant[(1024, b)] for b in (0.001, 0.003, 0.01, 0.03, 0.1, 0.3)]
+    acne, gone = ([r.also[k] for r in sizes] for k in ("acne %", "detached %"))
+    assert acne == sorted(acne, reverse=True) and acne[0] > 10 and acne[-1] < 2
+    assert gone == sorted(gone) and gone[-1] > gone[0]
+    assert offset[(1024, 4.0)].also["detached %"] > offset[(1024, 0.25)].also["detached %"]
+    # The tangent plane needs no size: next to no acne, and shadows stay.
+    best = plane[(1024, 0.05)]
+    assert best.also["acne %"] < 3 and best.error.value < 0.5 * bare.error.value
+
+
+def test_memory_is_the_price_and_time_a_counter(tmp_path):
+    question = shadow_memory.question()
+    few = [c for c in question.candidates if c.name in ("hard", "pcss", "moments as mips, 16 bits", "distance_field")]
+    result = study.run(study.Question(**{**vars(question), "candidates": few}), "large penumbra", **FAST)
+    hard = by_setting(result, "hard")
+    assert [hard[(n,)].ms.value for n in (128, 2048)] == [4 * 128**2, 4 * 2048**2]
+    assert hard[(128,)].counters["ms"] > 0 and "bytes" not in hard[(128,)].counters
+    # Depths, four powers of 16 bits, a third for mips.
+    mips = by_setting(result, "moments as mips, 16 bits")
+    assert mips[(256, "moment", "mip", 16)].ms.value == 4 * 256**2 + round(256**2 * 8 * 4 / 3)
+    unit = result.cost_unit()
+    assert unit.short == "MB" and unit.per_ms == 1e-6
+    assert " MB" in str(result.pick(max_error=0.5)) and "MB: megabytes" in result.table()
+    with pytest.raises(study.NothingQualifies, match="MB"):
+        result.pick(max_error=1e-6)
+    page = result.report(tmp_path, max_error=0.5).read_text()
+    assert "Error against bytes" in page and "megabytes" in page
+    rows = list(csv.DictReader((tmp_path / "figures.csv").open()))
+    assert {r["technique"] for r in rows} == {c.name for c in few} and all(float(r["ms"]) > 0 for r in rows)
+
+
+def test_further_samples_are_others():
+    scene = _visibility.BREAKING["large penumbra"]()
+    case = study.Case("large penumbra", "", scene, scene.camera, SIZE, np.dtype(np.float32), 0)
+    inputs = shadow_memory._setup(case)
+    a, b = (shadow_memory._estimate(inputs, 16, 1, start, None) for start in (0, 16))
+    whole = shadow_memory._estimate(inputs, 256, 1, 32, None)
+    where = _visibility.facing(inputs)
+    assert not np.array_equal(a, b) and np.abs((a - b)[where].mean()) < 5e-3
+    # Two sets of 16 together are nearer than either.
+    error = [np.sqrt(np.mean((x - whole)[where] ** 2)) for x in (a, b, (a + b) / 2)]
+    assert error[2] < 0.85 * min(error[:2])
+    part = np.zeros_like(where)
+    part[20:30] = True
+    np.testing.assert_allclose(shadow_memory._estimate(inputs, 16, 1, 0, part).shape, a.shape)
