@@ -4,6 +4,10 @@
 //! Workers claim pieces in order; the calling thread waits, and every few milliseconds lets its [`Watch`] show
 //! progress or stop the work (Ctrl-C). The pool is built at first use, in each process anew (a forked child has
 //! none of its parent's threads), and can be resized at any time.
+//!
+//! A closure is compiled in every unit that makes a pointer of it. So what takes a kernel's closure here is `#[inline]`:
+//! it becomes a pointer in the kernel's own unit, and what schedules it is compiled once. Without that all kernels land
+//! in one unit, which then keeps one core busy for most of the build.
 
 use rayon::{ThreadPool, ThreadPoolBuilder};
 use std::ops::ControlFlow;
@@ -78,10 +82,10 @@ pub fn pool() -> Arc<ThreadPool> {
 }
 
 /// Runs `task(0) … task(tasks - 1)` on the pool, each once. Results must not depend on which thread takes a task.
+#[inline]
 pub fn run(watch: &mut dyn Watch, tasks: usize, task: impl Fn(usize) + Sync) -> Result<(), Interrupted> {
     // One piece is not worth waking a thread for.
     let here = tasks <= 1;
-    // Through a pointer: the pool's code is compiled once, and each kernel in its own chapter's unit.
     run_tasks(watch, tasks, here, &|i, _| task(i))
 }
 
@@ -136,23 +140,29 @@ fn run_tasks(watch: &mut dyn Watch, tasks: usize, here: bool, task: Task) -> Res
 
 /// Runs `work` on the pool, where it may fork (`rayon::join`), while the calling thread watches. `work` should look
 /// at its flag now and then, and return soon once it is set; its result is dropped then.
+#[inline]
 pub fn run_forking<R: Send>(
     watch: &mut dyn Watch,
     work: impl FnOnce(&AtomicBool) -> R + Send,
 ) -> Result<R, Interrupted> {
+    let (mut work, mut result) = (Some(work), None);
+    run_watched(watch, &mut |stop| result = work.take().map(|work| work(stop)))?;
+    result.ok_or(Interrupted)
+}
+
+fn run_watched(watch: &mut dyn Watch, work: &mut (dyn FnMut(&AtomicBool) + Send)) -> Result<(), Interrupted> {
     let stop = AtomicBool::new(false);
     // As in `run`: a thread of the pool that waited could wait for itself.
     if rayon::current_thread_index().is_some() {
-        let result = work(&stop);
-        return finish(watch.tick(1, 1)).map(|()| result);
+        work(&stop);
+        return finish(watch.tick(1, 1));
     }
     let (busy, finished) = (Mutex::new(1usize), Condvar::new());
-    let mut result = None;
     let mut verdict = ControlFlow::Continue(());
     pool().in_place_scope(|scope| {
         scope.spawn(|_| {
             let _out = CountOut(&busy, &finished);
-            result = Some(work(&stop));
+            work(&stop);
         });
         let mut left = busy.lock().unwrap_or_else(PoisonError::into_inner);
         while *left > 0 {
@@ -169,10 +179,7 @@ pub fn run_forking<R: Send>(
     if verdict.is_continue() {
         verdict = watch.tick(1, 1);
     }
-    match (finish(verdict), result) {
-        (Ok(()), Some(r)) => Ok(r),
-        _ => Err(Interrupted),
-    }
+    finish(verdict)
 }
 
 fn finish(verdict: ControlFlow<()>) -> Result<(), Interrupted> {
@@ -274,13 +281,13 @@ tuple!(A 0, B 1, C 2, D 3, E 4, F 5, G 6, H 7, I 8, J 9, K 10);
 tuple!(A 0, B 1, C 2, D 3, E 4, F 5, G 6, H 7, I 8, J 9, K 10, L 11);
 
 /// Calls `f(first, piece)` for every piece of at most `size` items; `first` is the index of its first item.
+#[inline]
 pub fn for_each<P: Pieces>(
     watch: &mut dyn Watch,
     data: P,
     size: usize,
     f: impl Fn(usize, P) + Sync,
 ) -> Result<(), Interrupted> {
-    let f: &(dyn Fn(usize, P) + Sync) = &f;
     // One piece is not worth waking a thread for.
     let here = data.items() <= size;
     for_each_piece(watch, data, size, here, &|i, piece, _| f(i, piece))
@@ -288,6 +295,7 @@ pub fn for_each<P: Pieces>(
 
 /// [`for_each`] over pieces of which one may take long: the flag tells it to return soon. `long` wakes a thread even for a
 /// single piece, so that the caller can watch it.
+#[inline]
 pub fn for_each_stoppable<P: Pieces>(
     watch: &mut dyn Watch,
     data: P,

@@ -238,12 +238,25 @@ impl Watch for PyWatch {
     }
 }
 
-/// Runs a kernel without the interpreter, watched.
+/// Runs a kernel without the interpreter, watched. Inlined, for the reason that [`crate::parallel`] gives.
+#[inline]
 pub fn run<R: Send>(
     py: Python<'_>,
     progress: Option<Py<PyAny>>,
     kernel: impl FnOnce(&mut dyn Watch) -> Result<R, Interrupted> + Send,
 ) -> PyResult<R> {
+    let (mut kernel, mut result) = (Some(kernel), Err(Interrupted));
+    run_watched(py, progress, &mut |watch| {
+        result = kernel.take().map_or(Err(Interrupted), |kernel| kernel(watch));
+        if result.is_ok() { Ok(()) } else { Err(Interrupted) }
+    })?;
+    result.map_err(|Interrupted| PyKeyboardInterrupt::new_err(()))
+}
+
+/// A kernel behind a pointer.
+type Kernel<'a> = &'a mut (dyn FnMut(&mut dyn Watch) -> Result<(), Interrupted> + Send);
+
+fn run_watched(py: Python<'_>, progress: Option<Py<PyAny>>, kernel: Kernel) -> PyResult<()> {
     let mut watch = PyWatch { progress, raised: None };
     let result = py.detach(|| kernel(&mut watch));
     result.map_err(|Interrupted| watch.raised.take().unwrap_or_else(|| PyKeyboardInterrupt::new_err(())))
