@@ -355,7 +355,7 @@ def distance_field(
     ...     return outside + np.minimum(np.maximum(beside, above), 0.0)
     >>> receivers = [[-1.0, 0, 0], [0, 0, 0], [0.125, 0, 0], [0.25, 0, 0], [1, 0, 0]]
     >>> distance_field(wall, receivers, None, light, penumbra="outer", step=0.05).round(2)
-    array([0.  , 0.  , 0.25, 0.5 , 1.  ])
+    array([0.  , 0.  , 0.24, 0.48, 1.  ])
     """
     if not isinstance(field, DistanceGrid) and not callable(field):
         raise TypeError(f"field: expected a DistanceGrid or a function, got {type(field).__name__}")
