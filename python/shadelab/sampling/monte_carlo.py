@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable, Sequence
-from statistics import NormalDist
 from typing import Any, Literal, NamedTuple, TypeAlias
 
 import numpy as np
@@ -51,6 +50,8 @@ class Estimate(NamedTuple):
 
 def _quantile(confidence: float, freedom: float) -> float:
     """Of Student's distribution, two-sided, by Fisher and Cornish's expansion; within 0.1 % from 7 degrees on."""
+    from statistics import NormalDist  # not at import: it takes longer than all of this file
+
     z = NormalDist().inv_cdf(0.5 + confidence / 2)
     first = (z**3 + z) / 4
     second = (5 * z**5 + 16 * z**3 + 3 * z) / 96
