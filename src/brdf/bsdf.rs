@@ -1,5 +1,6 @@
 //! Any reflection model, as kernels hold it at a surface point: one of all kinds, copied by value.
 
+use super::compensated_lobes::CompensatedLobes;
 use super::conductor::Conductor;
 use super::dielectric::Dielectric;
 use super::kulla_conty::Compensated;
@@ -71,6 +72,7 @@ models! {
     9 SpecularGlossiness(SpecularGlossiness),
     10 Compensated(Compensated),
     11 Principled(Principled),
+    12 CompensatedLobes(CompensatedLobes),
 }
 
 /// The factors of a microfacet model, f = D F G / (4 cos θi cos θo).
@@ -111,6 +113,7 @@ impl<T: Real> Bsdf<T> {
             Bsdf::RoughDielectric(m) => (m.facets, m.fresnel(c, wo)),
             Bsdf::Principled(m) => (m.glass.facets, m.mirrors(c)),
             Bsdf::MetallicRoughness(m) => (m.facets(), m.fresnel(c)),
+            Bsdf::CompensatedLobes(m) => (m.once.facets(), m.once.fresnel(c)),
             Bsdf::SpecularGlossiness(SpecularGlossiness(m)) => (m.facets(), m.fresnel(c)),
             _ => return None,
         };

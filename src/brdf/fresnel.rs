@@ -59,6 +59,21 @@ pub fn fresnel_dielectric<V: Lanes>(cos_theta: V, eta: V) -> Fresnel<V> {
     Fresnel { s: clean(s), p: clean(p), cos_t: g / eta }
 }
 
+/// One less the reflectance of unpolarised light at the interface of two clear bodies, without that difference: it keeps
+/// its digits where nearly all is reflected.
+#[inline(always)]
+pub fn dielectric_transmittance<V: Lanes>(cos_theta: V, eta: V) -> V {
+    let (zero, two, c) = (eta.num(0.0), eta.num(2.0), cos_theta);
+    let squared = (eta - eta.num(1.0)) * (eta + eta.num(1.0)) + c * c;
+    let g = V::select(squared.less_eq(zero), zero, squared).sqrt();
+    // 1 − ((a − b) / (a + b))² = 4ab / (a + b)², of (c, g) and of (η c, g / η).
+    let (s, p) = (c + g, eta * c + g / eta);
+    let passed = two * ((c / s) * (g / s) + (c / p) * (g / p));
+    // At grazing incidence on η = 1 all of it is 0/0: nothing is there to reflect.
+    let closed = V::select(eta.equal(eta.num(1.0)), eta.num(1.0), zero);
+    V::select(squared.less_eq(zero), closed, passed)
+}
+
 /// Of the refracted wave in a metal, whose index cosine is a + ib: a² + b², and 2 c a.
 #[inline(always)]
 fn in_metal<V: Lanes>(c: V, eta: V, k: V) -> (V, V) {
@@ -102,8 +117,19 @@ pub fn cosine<V: Lanes>(c: V) -> V {
     super::in_unit(c)
 }
 
-/// NaN unless positive.
+/// The largest index and extinction, and one over the smallest index: their fourth powers are numbers in single.
+const LARGEST: f64 = 1e9;
+
+/// NaN unless positive and at most 1e9.
 #[inline(always)]
 pub fn index<V: Lanes>(eta: V) -> V {
-    V::select(eta.num(0.0).less(eta), eta, eta.like(V::Elem::NAN))
+    let inside = eta.num(0.0).less(eta) & eta.less_eq(eta.num(LARGEST));
+    V::select(inside, eta, eta.like(V::Elem::NAN))
+}
+
+/// NaN unless in [0, 1e9].
+#[inline(always)]
+pub fn extinction<V: Lanes>(k: V) -> V {
+    let inside = k.num(0.0).less_eq(k) & k.less_eq(k.num(LARGEST));
+    V::select(inside, k, k.like(V::Elem::NAN))
 }

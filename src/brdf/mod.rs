@@ -13,12 +13,13 @@
 //! - [`rough_conductor`], [`rough_dielectric`]: both of microscopic facets
 //! - [`metallic_roughness`]: the material of real-time shading and path tracing alike
 //! - [`specular_glossiness`]: its sibling, and the way between both
-//! - [`kulla_conty`]: rough metal with the light of further bounces
+//! - [`kulla_conty`]: rough metal, and [`metallic_roughness`], with the light of further bounces
 //! - [`principled`]: the artist's model of film
 //! - [`Bsdf`]: any of them, as kernels hold it
 
 mod arrays;
 mod bsdf;
+mod compensated_lobes;
 pub mod conductor;
 pub mod dielectric;
 pub mod fresnel;

@@ -70,3 +70,13 @@ def test_a_metal_without_extinction_is_a_clear_body():
     c = np.linspace(0.01, 1, 50)
     for eta in (1.5, 0.7):
         np.testing.assert_allclose(brdf.fresnel(c, eta, 0.0), brdf.fresnel(c, eta), rtol=1e-9, atol=1e-15)
+
+
+def test_huge_indices_are_out_of_the_domain():
+    cosines = np.linspace(0, 1, 9)
+    for dtype in (np.float32, np.float64):
+        mirror = brdf.fresnel(cosines.astype(dtype), 1e9, 1e9)
+        assert np.isfinite(mirror).all() and mirror.min() > 0.99
+        assert np.isfinite(brdf.fresnel(cosines.astype(dtype), 1e9)).all()
+    for given in ((1e300,), (1e10, 0.0), (1.5, 1e160), (1.5, -1.0)):
+        assert np.isnan(brdf.fresnel(cosines, *given)).all()

@@ -79,3 +79,43 @@ def test_draws_follow_the_density(compensation):
     model = brdf.RoughConductor(0.8, compensation=compensation)
     assert common.samples_follow(model, common.at(0.6)) > 1e-4
     assert common.total(lambda w: model.pdf(w, common.at(0.6))) == pytest.approx(1, abs=1e-3)
+
+
+@pytest.mark.parametrize("compensation", ["kulla_conty", "scaled"])
+@pytest.mark.parametrize("roughness", [0.0, 0.25, 0.5, 0.75, 1.0])
+def test_white_metal_of_the_real_time_material_gives_all_back(roughness, compensation):
+    model = brdf.MetallicRoughness(1.0, 1.0, roughness, compensation=compensation)
+    assert abs(brdf.white_furnace(model)).max() < 0.002
+    plain = brdf.MetallicRoughness(1.0, 1.0, roughness)
+    assert roughness < 0.3 or brdf.white_furnace(plain).min() > 0.1
+
+
+@pytest.mark.parametrize("metallic", [0.0, 0.5, 1.0])
+@pytest.mark.parametrize("roughness", [0.1, 0.5, 1.0])
+def test_the_real_time_material_gives_back_no_more_than_came(metallic, roughness):
+    wo = np.stack([common.at(c) for c in (1.0, 0.7, 0.4, 0.1)])
+    model = brdf.MetallicRoughness((1.0, 0.5, 0.04), metallic, roughness, compensation="kulla_conty")
+    plain = brdf.MetallicRoughness((1.0, 0.5, 0.04), metallic, roughness)
+    albedo, before = (brdf.directional_albedo(m, wo, 1 << 15) for m in (model, plain))
+    # The table's and the draws' error.
+    assert albedo.max() < 1.003 and (albedo >= before - 1e-3).all()
+    if metallic == 0:
+        assert (albedo - before).max() < 0.004
+    wi, wo = common.directions(300, 3), common.directions(300, 4)
+    np.testing.assert_allclose(model.eval(wi, wo), model.eval(wo, wi), rtol=1e-11)
+
+
+def test_the_real_time_metal_is_schlicks_share_of_the_rough_conductor():
+    """At F = 1 both are the same mirrors."""
+    wi, wo = common.directions(200, 5), common.directions(200, 6)
+    metal = brdf.MetallicRoughness(1.0, 1.0, 0.8, compensation="kulla_conty")
+    white = brdf.RoughConductor(0.64, **WHITE, compensation="kulla_conty")
+    np.testing.assert_allclose(metal.eval(wi, wo), white.eval(wi, wo), rtol=2e-6)
+
+
+@pytest.mark.parametrize("compensation", ["kulla_conty", "scaled"])
+@pytest.mark.parametrize("metallic", [0.2, 1.0])
+def test_draws_of_the_real_time_material_follow_the_density(metallic, compensation):
+    model = brdf.MetallicRoughness(0.7, metallic, 0.9, compensation=compensation)
+    assert common.samples_follow(model, common.at(0.6)) > 1e-4
+    assert common.total(lambda w: model.pdf(w, common.at(0.6))) < 1 + 1e-3

@@ -144,3 +144,35 @@ def test_half_lambert_wraps():
 def test_reflected_radiance_of_a_half_lit_sky():
     got = brdf.reflected_radiance(brdf.Diffuse((0.2, 0.4, 0.8)), [0.0, 0, 1], lambda w: w[:, 0] > 0, 1 << 14)
     np.testing.assert_allclose(got, [0.1, 0.2, 0.4], rtol=5e-3)
+
+
+HUGE = {
+    "Conductor": ({"eta": 1e9, "k": 1e9}, {"k": 1e160}, "k"),
+    "RoughConductor": ({"eta": 1e-9, "k": 1e9}, {"eta": 1e300}, "eta"),
+    "Dielectric": ({"eta": 1e9}, {"eta": 1e300}, "eta"),
+    "RoughDielectric": ({"eta": 1e9}, {"eta": 1e-300}, "eta"),
+    "Phong": ({"exponent": 1e9}, {"exponent": 1e300}, "exponent"),
+    "BlinnPhong": ({"exponent": 1e9}, {"exponent": 1e300}, "exponent"),
+    "Plastic": ({"eta": 1e9}, {"eta": 1e300}, "eta"),
+    "Principled": ({"eta": 1e9, "spec_trans": 0.5, "form": "2015"}, {"eta": 1e300}, "eta"),
+}
+
+
+@pytest.mark.parametrize("dtype", [np.float32, np.float64])
+@pytest.mark.parametrize("name", HUGE)
+def test_huge_parameters_have_their_limit_or_are_refused(name, dtype):
+    kind, (held, refused, argument) = getattr(brdf, name), HUGE[name]
+    with pytest.raises(ValueError, match=f"{argument}: expected a number in"):
+        kind(**refused)
+    wo = common.directions(64, 5, dtype, 0.01)
+    wi = np.concatenate([common.directions(32, 6, dtype, 0.01), wo[32:] * np.array([-1, -1, 1], dtype)])
+    model = kind(**held)
+    draws = model.sample(wo, np.random.default_rng(2).random((64, 3)).astype(dtype))
+    for found in (model.eval(wi, wo), model.pdf(wi, wo), draws.weight, draws.pdf):
+        assert np.isfinite(found).all() and (found >= 0).all()
+    # An element of an array is no reason to refuse the others.
+    value = refused[argument]
+    core = (3,) if argument == "k" or kind is brdf.RoughConductor else ()
+    several = np.broadcast_to(np.reshape([1.5, value], (2, *(1 for _ in core))), (2, *core)).astype(np.float64)
+    drawn = kind(**{**held, argument: several}).sample(wo[:1].astype(np.float64), np.full((2, 3), 0.3))
+    assert np.isfinite(drawn.weight[0]).all() and np.isnan(drawn.weight[1]).any()

@@ -259,7 +259,7 @@ def fresnel(
     Returns
     -------
     ndarray, or Fresnel
-        Of unpolarised light; NaN where `cos_theta` is not in [0, 1] or `eta` not above 0.
+        Of unpolarised light; NaN where `cos_theta` is not in [0, 1], `eta` not in (0, 1e9], or `k` not in [0, 1e9].
 
     Raises
     ------

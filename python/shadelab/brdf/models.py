@@ -5,7 +5,7 @@
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Any, ClassVar, Literal
 
 import numpy as np
@@ -33,6 +33,8 @@ SHAPES = ("ggx", "beckmann")
 DIFFUSERS = ("qualitative", "energy_preserving")
 COMPENSATIONS = ("none", "kulla_conty", "kulla_conty_as_published", "scaled")
 MASKINGS = ("height_correlated", "separable", "schlick", "v_cavity")
+# Beyond these squares of squares are no numbers in single, and pictures no others: a mirror, a point.
+LEAST, MOST = 1e-9, 1e9
 # Copper, at 630, 532 and 465 nm.
 COPPER_ETA = (0.2004, 0.924, 1.1022)
 COPPER_K = (3.9129, 2.4528, 2.1421)
@@ -49,6 +51,18 @@ class MetallicRoughness(Model):
     metallic, roughness, specular : array_like
         The metal's share, the artist's roughness (alpha is its square, no less than 1e-4), the strength of the
         dielectric's mirrors; in [0, 1].
+    compensation : {"none", "kulla_conty", "kulla_conty_as_published", "scaled"}
+        Of the light that mirrors throw at each other, as of `RoughConductor`.
+
+    Notes
+    -----
+    With compensation a white metal gives all light back within 0.2 % whatever its roughness (59 % are lost at roughness
+    1 without), and no base colour gives back more than came. Of a dielectric it adds less than 0.003 of the light.
+
+    References
+    ----------
+    Khronos, *glTF 2.0 specification*, 2021, appendix B; C. Kulla, A. Conty, *Revisiting physically based shading at
+    Imageworks*, 2017; E. Turquin, *Practical multiple scattering compensation for microfacet models*, 2019.
 
     Examples
     --------
@@ -60,11 +74,15 @@ class MetallicRoughness(Model):
     metallic: Any = parameter(0.0, 0, 0, 1)
     roughness: Any = parameter(0.5, 0, 0, 1)
     specular: Any = parameter(1.0, 0, 0, 1)
+    compensation: Literal["none", "kulla_conty", "kulla_conty_as_published", "scaled"] = option("none", COMPENSATIONS)
     _kind: ClassVar[int] = 0
     _facets: ClassVar[bool] = True
 
+    def _number(self) -> int:
+        return 0 if self.compensation == "none" else 12
+
     def _stand_in(self) -> MetallicRoughness:
-        return self
+        return self if self.compensation == "none" else replace(self, compensation="none")
 
 
 @dataclass(frozen=True)
@@ -100,7 +118,8 @@ class Conductor(Model):
     Parameters
     ----------
     eta, k : array_like, shape (..., 3)
-        Index and extinction per channel; copper if not given. Indices that are large make a perfect mirror.
+        Index in [1e-9, 1e9] and extinction in [0, 1e9] per channel; copper if not given. Large ones make a perfect
+        mirror.
     tint : array_like, shape (..., 3)
         A factor of the reflectance, in [0, 1].
 
@@ -114,8 +133,8 @@ class Conductor(Model):
     array([-0.6, -0. ,  0.8])
     """
 
-    eta: Any = parameter(COPPER_ETA, 3, above=0.0)
-    k: Any = parameter(COPPER_K, 3, 0.0)
+    eta: Any = parameter(COPPER_ETA, 3, LEAST, MOST)
+    k: Any = parameter(COPPER_K, 3, 0.0, MOST)
     tint: Any = color((1.0, 1.0, 1.0))
     _kind: ClassVar[int] = 2
 
@@ -134,7 +153,7 @@ class Dielectric(Model):
     Parameters
     ----------
     eta : array_like
-        Index of the body over that outside, above 0; 1.5 is glass in air.
+        Index of the body over that outside, in [1e-9, 1e9]; 1.5 is glass in air.
     tint : array_like, shape (..., 3)
         A factor of what passes, in [0, 1].
 
@@ -154,7 +173,7 @@ class Dielectric(Model):
     array([0.4444, 0.4444, 0.4444])
     """
 
-    eta: Any = parameter(1.5, above=0.0)
+    eta: Any = parameter(1.5, 0, LEAST, MOST)
     tint: Any = color((1.0, 1.0, 1.0))
     _kind: ClassVar[int] = 3
     _transmits: ClassVar[bool] = True
@@ -189,7 +208,7 @@ class RoughConductor(_Rough):
     alpha : array_like
         Width of the distribution of normals (along x), in (0, 1]; the square of an artist's roughness.
     eta, k : array_like, shape (..., 3)
-        Index and extinction per channel; copper if not given.
+        Index in [1e-9, 1e9] and extinction in [0, 1e9] per channel; copper if not given.
     alpha_y : array_like, optional
         Width along y, where it differs.
     distribution : {"ggx", "beckmann"}
@@ -219,8 +238,8 @@ class RoughConductor(_Rough):
     """
 
     alpha: Any = parameter(0.1, 0, high=1.0, above=0.0)
-    eta: Any = parameter(COPPER_ETA, 3, above=0.0)
-    k: Any = parameter(COPPER_K, 3, 0.0)
+    eta: Any = parameter(COPPER_ETA, 3, LEAST, MOST)
+    k: Any = parameter(COPPER_K, 3, 0.0, MOST)
     alpha_y: Any = parameter(None, 0, high=1.0, above=0.0)
     distribution: Literal["ggx", "beckmann"] = option("ggx", SHAPES)
     masking: Literal["height_correlated", "separable", "schlick", "v_cavity"] = option("height_correlated", MASKINGS)
@@ -256,7 +275,7 @@ class RoughDielectric(_Rough):
     alpha : array_like
         Width of the distribution of normals (along x), in (0, 1]; the square of an artist's roughness.
     eta : array_like
-        Index of the body over that outside, above 0.
+        Index of the body over that outside, in [1e-9, 1e9].
     alpha_y : array_like, optional
         Width along y, where it differs.
     distribution : {"ggx", "beckmann"}
@@ -283,7 +302,7 @@ class RoughDielectric(_Rough):
     """
 
     alpha: Any = parameter(0.1, 0, high=1.0, above=0.0)
-    eta: Any = parameter(1.5, above=0.0)
+    eta: Any = parameter(1.5, 0, LEAST, MOST)
     alpha_y: Any = parameter(None, 0, high=1.0, above=0.0)
     distribution: Literal["ggx", "beckmann"] = option("ggx", SHAPES)
     masking: Literal["height_correlated", "separable", "schlick", "v_cavity"] = option("separable", MASKINGS)
@@ -349,7 +368,7 @@ class Phong(Model):
     diffuse, specular : array_like, shape (..., 3)
         Albedos of the diffuser and of the highlight, in [0, 1]; together at most one if energy is to be kept.
     exponent : array_like
-        At least 0; the larger, the smaller the highlight.
+        In [0, 1e9]; the larger, the smaller the highlight.
     normalized : bool
         The highlight gives back `specular` of light along the normal, and less of other light; False is the classic
         shading, ``specular * cos ** exponent`` in place of value times cosine.
@@ -371,7 +390,7 @@ class Phong(Model):
 
     diffuse: Any = color((0.5, 0.5, 0.5))
     specular: Any = color((0.5, 0.5, 0.5))
-    exponent: Any = parameter(20.0, 0, 0.0)
+    exponent: Any = parameter(20.0, 0, 0.0, MOST)
     normalized: bool = True
     _kind: ClassVar[int] = 7
     _blinn: ClassVar[bool] = False
@@ -425,7 +444,7 @@ class Plastic(Model):
     diffuse : array_like, shape (..., 3)
         Albedo of the diffuser, in [0, 1].
     eta : array_like
-        Index of the coat over that outside, at least 1.
+        Index of the coat over that outside, in [1, 1e9].
     nonlinear : bool
         Colour every bounce between diffuser and coat, which makes colours deeper.
 
@@ -444,7 +463,7 @@ class Plastic(Model):
     """
 
     diffuse: Any = color((0.5, 0.5, 0.5))
-    eta: Any = parameter(1.5, 0, 1.0)
+    eta: Any = parameter(1.5, 0, 1.0, MOST)
     nonlinear: bool = False
     _kind: ClassVar[int] = 8
 
@@ -454,8 +473,8 @@ class Plastic(Model):
         super().__post_init__()
 
     def _numbers(self) -> list[Any]:
-        inner = fresnel_average(1 / np.asarray(self.eta, np.float64))
-        return [*self._parameters(), (inner, _UNIT), _flag(self.nonlinear)]
+        passes = 1 - fresnel_average(np.asarray(self.eta, np.float64))
+        return [*self._parameters(), (passes, _UNIT), _flag(self.nonlinear)]
 
     def _stand_in(self) -> MetallicRoughness:
         return MetallicRoughness(self.diffuse, 0.0, 0.0, _strength(self.eta))
@@ -508,7 +527,7 @@ class Principled(Model):
     clearcoat, clearcoat_gloss, subsurface, spec_trans : array_like
         In [0, 1]. `spec_trans`, of the form of 2015, is the share of glass.
     eta : array_like
-        Index of the body in the form of 2015, above 0.
+        Index of the body in the form of 2015, in [1e-9, 1e9].
     form : {"2012", "2015"}
         The BRDF of the first notes, or the BSDF of the later ones.
 
@@ -544,7 +563,7 @@ class Principled(Model):
     clearcoat_gloss: Any = parameter(1.0, 0, 0, 1)
     subsurface: Any = parameter(0.0, 0, 0, 1)
     spec_trans: Any = parameter(0.0, 0, 0, 1)
-    eta: Any = parameter(1.5, 0, above=0.0)
+    eta: Any = parameter(1.5, 0, LEAST, MOST)
     form: Literal["2012", "2015"] = option("2012", ("2012", "2015"))
     _kind: ClassVar[int] = 11
     _facets: ClassVar[bool] = True

@@ -40,7 +40,8 @@ pub fn fresnel_dielectric(py: Python<'_>, given: Arrays<'_>, out: Arrays<'_>) ->
 #[pyfunction]
 pub fn fresnel_conductor(py: Python<'_>, given: Arrays<'_>, out: Arrays<'_>) -> PyResult<()> {
     lanewise!(py, given, out, |cos: 1, eta: 1, k: 1| -> (s: 1, p: 1) {
-        let f = kernels::fresnel_conductor(kernels::cosine(cos[0]), kernels::index(eta[0]), k[0]);
+        let (eta, k) = (kernels::index(eta[0]), kernels::extinction(k[0]));
+        let f = kernels::fresnel_conductor(kernels::cosine(cos[0]), eta, k);
         ([f.s], [f.p])
     })
 }
@@ -68,13 +69,14 @@ pub fn refract(py: Python<'_>, given: Arrays<'_>, out: Arrays<'_>) -> PyResult<(
 #[pyfunction]
 pub fn fresnel_average_dielectric(py: Python<'_>, given: Arrays<'_>, out: Arrays<'_>) -> PyResult<()> {
     elementwise!(py, given, out, |eta: [T; 1]| -> (f: [T; 1]) {
-        [T::of(average::fresnel_average_dielectric(eta[0].to_f64()))]
+        [T::of(average::fresnel_average_dielectric(kernels::index(eta[0]).to_f64()))]
     })
 }
 
 #[pyfunction]
 pub fn fresnel_average_conductor(py: Python<'_>, given: Arrays<'_>, out: Arrays<'_>) -> PyResult<()> {
     elementwise!(py, given, out, |eta: [T; 1], k: [T; 1]| -> (f: [T; 1]) {
-        [T::of(average::fresnel_average_conductor(eta[0].to_f64(), k[0].to_f64()))]
+        let (eta, k) = (kernels::index(eta[0]), kernels::extinction(k[0]));
+        [T::of(average::fresnel_average_conductor(eta.to_f64(), k.to_f64()))]
     })
 }
