@@ -311,7 +311,9 @@ def gaussian_filter(
     sigmas = [_arrays.number("sigma", s, 0.0) for s in pair]
     cut = _arrays.number("truncate", truncate, 0.0)
     if max(sigmas) * cut > _MAX_REACH:
-        raise ValueError(f"sigma: expected a reach of at most {_MAX_REACH} pixels, got {max(sigmas) * cut:g}")
+        # Named is what is out of the ordinary.
+        name = "truncate" if cut > 10.0 and max(sigmas) * 10.0 <= _MAX_REACH else "sigma"
+        raise ValueError(f"{name}: expected a reach of at most {_MAX_REACH} pixels, got {max(sigmas) * cut:g}")
     _arrays.choice("border", border, ("nearest", "reflect", "wrap"))
     result = _arrays.output("out", out, given.shape, given.dtype)
     (pixels,) = _arrays.apart(result, pixels)

@@ -31,7 +31,7 @@ class Mesh:
     uvs : array_like, shape (V, 2), optional
         Texture coordinates; (0, 0) is the bottom left corner.
     colors : array_like, shape (V, 3), optional
-        Linear base colours, which multiply those of the material.
+        Linear base colours in [0, 1], which multiply those of the material.
     material_ids : array_like of integers, shape (F,), optional
         Which of an instance's materials each face has; None means the first.
 
@@ -71,6 +71,8 @@ class Mesh:
                     raise ValueError(f"{name}: expected shape ({count}, {width}), got {array.shape}")
                 if name != "normals":
                     _finite(name, array)
+                if name == "colors":
+                    _in_unit(name, array)
                 set_(self, name, array)
         if self.material_ids is not None:
             ids = _arrays.indices("material_ids", self.material_ids)
@@ -155,6 +157,14 @@ def _finite(name: str, array: Floats) -> None:
     if bad.any():
         row = int(np.argwhere(bad)[0][0])
         raise ValueError(f"{name}: vertex {row} is not finite: {array[row].tolist()}")
+
+
+def _in_unit(name: str, array: Floats) -> None:
+    # Rounding may pass the ends.
+    bad = (array < -1e-5) | (array > 1 + 1e-5)
+    if bad.any():
+        row = int(np.argwhere(bad)[0][0])
+        raise ValueError(f"{name}: vertex {row} is not in [0, 1]: {array[row].tolist()}")
 
 
 def _checked(positions: ArrayLike, faces: ArrayLike) -> tuple[Floats, NDArray[np.int32]]:

@@ -6,7 +6,7 @@ World space is right-handed, y up. Colours and radiances are linear, sRGB primar
 from __future__ import annotations
 
 import math
-from collections.abc import Sequence
+from collections.abc import Iterable, Sequence
 from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, Any, NamedTuple, TypeAlias
 
@@ -362,6 +362,8 @@ class Scene:
 
     def __post_init__(self) -> None:
         set_ = object.__setattr__
+        if not isinstance(self.instances, Instance | Mesh | Iterable):
+            raise TypeError(f"instances: expected Instance or Mesh, or several, got {type(self.instances).__name__}")
         given = [self.instances] if isinstance(self.instances, Instance | Mesh) else list(self.instances)
         for thing in given:
             if not isinstance(thing, Instance | Mesh):

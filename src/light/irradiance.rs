@@ -7,6 +7,7 @@
 use super::Light;
 use super::circle::Circle;
 use super::polygon::{self, Moments, double};
+use super::textured::Textured;
 use crate::dispatch;
 use crate::parallel::{self, Interrupted, Watch};
 use crate::real::{Lanes, Real};
@@ -52,7 +53,7 @@ fn area<T: Real>(
         return none;
     }
     match light {
-        Light::Rect(l) => {
+        Light::Rect(l) | Light::Textured(Textured { rect: l, .. }) => {
             let corners = l.corners().map(seen);
             of_sides(seen(l.center), turned(l.normal), l.two_sided, || polygon(&corners))
         }
@@ -78,6 +79,9 @@ fn area<T: Real>(
 /// Irradiance in W/m² on the side that the unit `normal` points to.
 #[inline(always)]
 pub fn irradiance<T: Real>(light: &Light<T>, point: Vec3<T>, normal: Vec3<T>) -> Vec3<T> {
+    if let Light::Textured(l) = light {
+        return l.irradiance(double(point.to_array()), double(normal.to_array())).map(T::of);
+    }
     if light.has_area() {
         let first = |m: f64| [0.0, m, 0.0, 0.0, 0.0, 0.0, 0.0];
         let [_, cosine, ..] = area(

@@ -8,7 +8,7 @@
 //! - [`tree`]: which of many lights to draw from
 //! - [`unshadowed`]: the radiance that surfaces reflect, nothing in between
 //!
-//! The lights themselves: [`rect`], [`disk`], [`sphere`], [`polygon_light`], [`spot`]; [`circle`] has the closed forms
+//! The lights themselves: [`rect`], [`textured`] (a rectangle that shows a `picture`), [`disk`], [`sphere`], [`polygon_light`], [`spot`]; [`circle`] has the closed forms
 //! of disks and spheres.
 
 pub(crate) mod circle;
@@ -16,6 +16,7 @@ pub(crate) mod disk;
 mod flat;
 pub mod irradiance;
 pub mod ltc;
+pub(crate) mod picture;
 pub mod polygon;
 pub(crate) mod polygon_light;
 pub(crate) mod rect;
@@ -24,6 +25,7 @@ pub mod sample;
 pub mod solid_angle;
 pub(crate) mod sphere;
 pub(crate) mod spot;
+pub mod textured;
 pub mod tree;
 pub mod unshadowed;
 
@@ -34,6 +36,7 @@ use polygon_light::PolygonLight;
 use rect::Rect;
 use sphere::Sphere;
 use spot::Spot;
+use textured::Textured;
 
 /// A light, per colour channel.
 #[derive(Clone, Debug)]
@@ -50,6 +53,7 @@ pub enum Light<T> {
         irradiance: Vec3<T>,
     },
     Rect(Rect<T>),
+    Textured(Textured<T>),
     Disk(Disk<T>),
     Sphere(Sphere<T>),
     Polygon(PolygonLight<T>),
@@ -94,7 +98,8 @@ pub struct Arrival<T> {
 }
 
 impl<T: Real> Light<T> {
-    /// What a punctual light sends to `point`; none from area lights, or from a light at the point itself.
+    /// What a punctual light sends to `point`; none from area lights, or from a light at the point
+    /// itself, or so near that it overflows.
     #[inline(always)]
     pub fn beam(&self, point: Vec3<T>) -> Option<Beam<T>> {
         match self {
@@ -124,16 +129,36 @@ impl<T: Real> Light<T> {
         self.has_area() && !matches!(self, Light::Ambient { .. })
     }
 
-    /// W/(m² sr) of an area light; zero of a punctual one.
+    /// W/(m² sr) of an area light, on the average over its area; zero of a punctual one.
     #[inline(always)]
     pub fn radiance(&self) -> Vec3<T> {
         match self {
             Light::Rect(l) => l.radiance,
+            Light::Textured(l) => l.rect.radiance,
             Light::Disk(l) => l.radiance,
             Light::Sphere(l) => l.radiance,
             Light::Polygon(l) => l.radiance,
             Light::Ambient { radiance } => *radiance,
             _ => Vec3::splat(T::zero()),
+        }
+    }
+
+    /// What is seen of an area light along a sighting, W/(m² sr).
+    #[inline(always)]
+    pub fn shown(&self, from: Vec3<T>, s: &Sighting<T>) -> Vec3<T> {
+        match self {
+            Light::Textured(l) => l.radiance(from, s.wi, s.distance),
+            _ => self.radiance(),
+        }
+    }
+
+    /// The middle of a light with an outline, with the density of a point drawn evenly.
+    #[inline(always)]
+    pub fn middle(&self, from: Vec3<T>) -> Option<Sighting<T>> {
+        let half = [T::of(0.5), T::of(0.5)];
+        match self {
+            Light::Textured(l) => l.rect.sample(from, half),
+            _ => self.sight(from, half),
         }
     }
 
@@ -143,6 +168,7 @@ impl<T: Real> Light<T> {
     pub fn sight(&self, from: Vec3<T>, u: [T; 2]) -> Option<Sighting<T>> {
         match self {
             Light::Rect(l) => l.sample(from, u),
+            Light::Textured(l) => l.sample(from, u),
             Light::Disk(l) => l.sample(from, u),
             Light::Sphere(l) => l.sample(from, u),
             Light::Polygon(l) => l.sample(from, u),
@@ -156,6 +182,7 @@ impl<T: Real> Light<T> {
     pub fn meet(&self, from: Vec3<T>, wi: Vec3<T>) -> Option<Sighting<T>> {
         match self {
             Light::Rect(l) => l.meet(from, wi),
+            Light::Textured(l) => l.meet(from, wi),
             Light::Disk(l) => l.meet(from, wi),
             Light::Sphere(l) => l.meet(from, wi),
             Light::Polygon(l) => l.meet(from, wi),
@@ -169,6 +196,7 @@ impl<T: Real> Light<T> {
     pub fn sight_evenly(&self, from: Vec3<T>, u: [T; 2]) -> Option<Sighting<T>> {
         match self {
             Light::Rect(l) => l.sample_evenly(from, u),
+            Light::Textured(l) => l.rect.sample_evenly(from, u),
             Light::Polygon(l) => l.sample_evenly(from, u),
             _ => self.sight(from, u),
         }
@@ -180,6 +208,7 @@ impl<T: Real> Light<T> {
         let met = self.meet(from, wi)?;
         let solid_angle = match self {
             Light::Rect(l) => l.solid_angle(from),
+            Light::Textured(l) => l.rect.solid_angle(from),
             Light::Polygon(l) => l.solid_angle(from),
             _ => return Some(met),
         };
@@ -196,7 +225,7 @@ impl<T: Real> Light<T> {
     #[inline(always)]
     pub fn sample(&self, from: Vec3<T>, u: [T; 2]) -> Option<Arrival<T>> {
         if let Some(s) = self.sight(from, u) {
-            let value = self.radiance() * (T::one() / s.pdf);
+            let value = self.shown(from, &s) * (T::one() / s.pdf);
             return Some(Arrival { wi: s.wi, distance: s.distance, value, pdf: s.pdf });
         }
         let beam = self.beam(from)?;
@@ -213,7 +242,14 @@ fn from_point<T: Real>(position: Vec3<T>, intensity: Vec3<T>, point: Vec3<T>) ->
     let wi = to.normalize();
     let distance = to.dot(wi);
     // In two steps: the square of a large distance overflows before the quotient vanishes.
-    let irradiance = intensity.map(|i| i / distance / distance);
+    let irradiance = intensity.map(
+        #[inline(always)]
+        |i| i / distance / distance,
+    );
+    // So near that no number holds what arrives: as at the light itself. NaN goes on.
+    if irradiance.x == T::INFINITY || irradiance.y == T::INFINITY || irradiance.z == T::INFINITY {
+        return None;
+    }
     Some(Beam { wi, distance, irradiance })
 }
 

@@ -82,7 +82,13 @@ impl Walk {
 /// The moment of order 1 alone: [`moments`] for irradiance.
 #[inline(always)]
 pub fn irradiance(corners: &[Vec3<f64>]) -> f64 {
-    let mut sum = 0.0;
+    vector_irradiance(corners).z
+}
+
+/// ∫ ω dω over the part above the horizon: its z is the irradiance, its direction the middle of what is seen.
+#[inline(always)]
+pub fn vector_irradiance(corners: &[Vec3<f64>]) -> Vec3<f64> {
+    let mut sum = Vec3::splat(0.0);
     let (mut first, mut last) = (None, Vec3::splat(0.0));
     let mut to = |corner: Vec3<f64>, close: bool| {
         let unit = if close { corner } else { corner.normalize() };
@@ -92,7 +98,7 @@ pub fn irradiance(corners: &[Vec3<f64>]) -> f64 {
             let normal = last.cross(unit);
             let sine = normal.length();
             if sine > 0.0 {
-                sum -= normal.z * (math::atan2(sine, last.dot(unit)) / sine);
+                sum = sum - normal * (math::atan2(sine, last.dot(unit)) / sine);
             }
         }
         last = unit;
@@ -114,7 +120,7 @@ pub fn irradiance(corners: &[Vec3<f64>]) -> f64 {
     if let Some(start) = start {
         to(start, true);
     }
-    0.5 * sum
+    sum * 0.5
 }
 
 /// Moments of orders 0 … 6 of a polygon whose corners are given from the point, the normal being z. Positive for a

@@ -112,15 +112,22 @@ impl<T: Real> Receiver<T> {
         desk: &mut Desk,
     ) -> Vec3<T> {
         if light.has_area() {
+            if let (Light::Textured(_), Mirrors::Sampled { digits, seed }) = (light, mirrors) {
+                return self.sampled(light, stream, seed, digits, true);
+            }
             let mirrored = match mirrors {
                 Mirrors::Transformed if light.has_outline() => self.transformed(light, desk),
-                Mirrors::Representative if light.has_outline() && !matches!(light, Light::Polygon(_)) => {
+                Mirrors::Representative
+                    if light.has_outline() && !matches!(light, Light::Polygon(_) | Light::Textured(_)) =>
+                {
                     self.represented(light)
                 }
-                Mirrors::Transformed | Mirrors::Representative => self.mirrored(light, stream, 0, &desk.few),
-                Mirrors::Sampled { digits, seed } => self.mirrored(light, stream, seed, digits),
+                Mirrors::Transformed | Mirrors::Representative => {
+                    self.sampled(light, stream, 0, &desk.few, false)
+                }
+                Mirrors::Sampled { digits, seed } => self.sampled(light, stream, seed, digits, false),
             };
-            self.diffuse(light) + mirrored
+            self.diffuse(light, desk) + mirrored
         } else {
             match self.beam(light) {
                 Some((radiance, ..)) => radiance,
@@ -140,7 +147,7 @@ impl<T: Real> Receiver<T> {
 
     /// The diffuse part: base/π (1 − F(wo)) ∫ (1 − F(c)) c dω, with (1 − c)⁵ c written in powers of c.
     #[inline(always)]
-    fn diffuse(&self, light: &Light<T>) -> Vec3<T> {
+    fn diffuse(&self, light: &Light<T>, desk: &mut Desk) -> Vec3<T> {
         // Metals have none; NaN goes on.
         if self.wo.z <= T::zero() || self.lobes.diffuse == Vec3::splat(T::zero()) {
             return (self.point + self.frame.z + self.wo) * T::zero();
@@ -150,7 +157,21 @@ impl<T: Real> Receiver<T> {
         let (f0, f90) = (self.lobes.base_f0.to_f64(), self.lobes.base_f90.to_f64());
         let through = (1.0 - f0) * m[1] - (f90 - f0) * grazing;
         let factor = T::of(through) * self.lobes.transmitted(self.wo.z) / T::PI;
-        self.lobes.diffuse.times(light.radiance()) * factor
+        let mut radiance = light.radiance();
+        if let Light::Textured(shown) = light {
+            let point = doubled(self.point);
+            if ltc::outline(light, point, &mut desk.corners) {
+                let frame = self.doubled_frame();
+                let corners = desk.corners.iter().copied();
+                radiance = ltc::diffuse_picture(shown, point, corners, &frame, &mut desk.scratch).map(T::of);
+            }
+        }
+        self.lobes.diffuse.times(radiance) * factor
+    }
+
+    #[inline(always)]
+    fn doubled_frame(&self) -> Frame<f64> {
+        Frame { x: doubled(self.frame.x), y: doubled(self.frame.y), z: doubled(self.frame.z) }
     }
 
     /// Whether directions of the mirrors' lobe are worth drawing beside points of the light: unless the lobe is dim
@@ -161,8 +182,7 @@ impl<T: Real> Receiver<T> {
             return false;
         }
         let peak = ggx::ggx_pdf(Vec3::new(-self.wo.x, -self.wo.y, self.wo.z), self.wo, self.lobes.alpha);
-        let half = T::of(0.5);
-        !light.sight(self.point, [half, half]).is_some_and(|s| peak < T::of(0.25) * s.pdf)
+        !light.middle(self.point).is_some_and(|s| peak < T::of(0.25) * s.pdf)
     }
 
     /// The mirrors' part of a light with an outline, by transformed cosines.
@@ -176,12 +196,20 @@ impl<T: Real> Receiver<T> {
             // NaN goes on.
             return (self.point + self.wo) * T::zero();
         }
-        let frame = Frame { x: doubled(self.frame.x), y: doubled(self.frame.y), z: doubled(self.frame.z) };
+        let frame = self.doubled_frame();
         let (wo, alpha) = (doubled(self.wo), self.lobes.alpha.to_f64());
-        let corners = desk.corners.iter().copied();
-        let [base, edge] = ltc::mirrored(ltc::shipped(), corners, &frame, wo, alpha, &mut desk.scratch)
-            .map(|x| T::of(Lanes::max(x, 0.0)));
-        self.lobes.f0.map(|f0| f0 * base + (self.lobes.f90 - f0) * edge).times(light.radiance())
+        let (corners, scratch, mut radiance) =
+            (desk.corners.iter().copied(), &mut desk.scratch, light.radiance());
+        let parts = if let Light::Textured(shown) = light {
+            let (parts, seen) =
+                ltc::mirrored_picture(ltc::shipped(), shown, point, corners, &frame, wo, alpha, scratch);
+            radiance = seen.map(T::of);
+            parts
+        } else {
+            ltc::mirrored(ltc::shipped(), corners, &frame, wo, alpha, scratch)
+        };
+        let [base, edge] = [T::of(Lanes::max(parts[0], 0.0)), T::of(Lanes::max(parts[1], 0.0))];
+        self.lobes.f0.map(|f0| f0 * base + (self.lobes.f90 - f0) * edge).times(radiance)
     }
 
     /// The mirrors' part, from one point that stands for the light.
@@ -209,11 +237,17 @@ impl<T: Real> Receiver<T> {
         if drawn { ggx::ggx_pdf(wi, self.wo, self.lobes.alpha) } else { T::zero() }
     }
 
-    /// The mirrors' part, by sampling the light and the lobe.
+    /// The mirrors' part, or the whole, for a direction.
     #[inline(always)]
-    fn mirrored(&self, light: &Light<T>, stream: u64, seed: u64, digits: &[[u32; 3]]) -> Vec3<T> {
-        let none = Vec3::splat(T::zero());
-        if !self.lobes.is_specular() || self.wo.z <= T::zero() || digits.is_empty() {
+    fn value(&self, wi: Vec3<T>, whole: bool) -> Vec3<T> {
+        if whole { self.lobes.eval(wi, self.wo) } else { self.lobes.specular(wi, self.wo) }
+    }
+
+    /// The mirrors' part, or the whole, by sampling the light and the lobe.
+    #[inline(always)]
+    fn sampled(&self, light: &Light<T>, stream: u64, seed: u64, digits: &[[u32; 3]], whole: bool) -> Vec3<T> {
+        let none = (self.point + self.wo) * T::zero();
+        if !(whole || self.lobes.is_specular()) || self.wo.z <= T::zero() || digits.is_empty() {
             return none;
         }
         let scramble = [
@@ -228,7 +262,8 @@ impl<T: Real> Receiver<T> {
             if let Some(s) = sighting {
                 let wi = self.frame.local(s.wi);
                 if wi.z > T::zero() {
-                    sum = sum + self.lobes.specular(wi, self.wo) * (wi.z / (s.pdf + self.lobe_pdf(wi, both)));
+                    let weight = wi.z / (s.pdf + self.lobe_pdf(wi, both));
+                    sum = sum + self.value(wi, whole).times(light.shown(self.point, &s)) * weight;
                 }
             }
             if !both {
@@ -239,10 +274,11 @@ impl<T: Real> Receiver<T> {
             if wi.z > T::zero()
                 && let Some(s) = light.meet(self.point, self.frame.world(wi))
             {
-                sum = sum + self.lobes.specular(wi, self.wo) * (wi.z / (s.pdf + self.lobe_pdf(wi, both)));
+                let weight = wi.z / (s.pdf + self.lobe_pdf(wi, both));
+                sum = sum + self.value(wi, whole).times(light.shown(self.point, &s)) * weight;
             }
         }
-        sum.times(light.radiance()) * (T::one() / T::of(digits.len() as f64))
+        sum * (T::one() / T::of(digits.len() as f64))
     }
 }
 

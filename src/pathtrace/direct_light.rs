@@ -67,7 +67,7 @@ impl<T: Real> Site<T> {
             return;
         }
         let lobe = if both { ggx::ggx_pdf(wi, r.wo, r.lobes.alpha) } else { T::zero() };
-        let value = r.lobes.eval(wi, r.wo).times(light.radiance()) * (wi.z / (s.pdf + lobe));
+        let value = r.lobes.eval(wi, r.wo).times(light.shown(r.point, s)) * (wi.z / (s.pdf + lobe));
         bench.rays.push(leave(r.point, self.normal, s.wi, self.offset, s.distance));
         bench.carried.push((value, sample));
     }

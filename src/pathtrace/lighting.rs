@@ -234,7 +234,7 @@ impl<T: Real> Surfaces<'_, T> {
             if let Some(sighting) = light.meet(origin, direction)
                 && sighting.distance < nearest.0
             {
-                nearest = (sighting.distance, Some((k, light.radiance(), sighting.pdf)));
+                nearest = (sighting.distance, Some((k, light.shown(origin, &sighting), sighting.pdf)));
             }
         }
         nearest.1

@@ -94,7 +94,7 @@ impl<T: Real> Stage<'_, T> {
         let (mut nearest, mut ambient) = ((hit.t, None), Vec3::splat(T::zero()));
         for light in self.scene.lights {
             if let Some(sighting) = light.meet(origin, direction) {
-                let brought = light.radiance() * weight(own, sighting.pdf);
+                let brought = light.shown(origin, &sighting) * weight(own, sighting.pdf);
                 if sighting.distance < nearest.0 {
                     nearest = (sighting.distance, Some(brought));
                 } else if sighting.distance == T::INFINITY {

@@ -1,6 +1,6 @@
 //! Point and directional lights on GGX under Schlick's Fresnel, and on Lambert's diffuser, eight surfaces at once.
 
-use super::lit::lobes;
+use super::lit::{lobes, share};
 use super::shade::{Lights, Surfaces};
 use crate::brdf::Bsdf;
 use crate::brdf::metallic_roughness::Lobes;
@@ -127,7 +127,10 @@ pub fn eight_lit<T: Real, S: Simd>(
                 let to = all3(s, *position) - point;
                 let squared = to.length_squared();
                 let inverse = one / squared.sqrt();
-                (to * inverse, all3(s, *intensity) * inverse * inverse, zero.less(squared))
+                let irradiance = all3(s, *intensity) * inverse * inverse;
+                // None from so near that no number holds it.
+                let held = irradiance.x + irradiance.y + irradiance.z;
+                (to * inverse, irradiance, zero.less(squared) & held.less(all(s, T::INFINITY)))
             }
             Light::Directional { direction, irradiance } => {
                 (all3(s, -*direction), all3(s, *irradiance), zero.less(one))
@@ -145,7 +148,7 @@ pub fn eight_lit<T: Real, S: Simd>(
         let mut cosine = local.z;
         if let Some(fraction) = fraction {
             let fraction: T::V8<S> = SimdBase::load_array_ref(s, eight(fraction, first));
-            cosine = fraction * cosine;
+            cosine = share(fraction) * cosine;
         }
         let f = lobes.eval(local, wo).times(irradiance) * Lanes::select(shines, cosine, zero);
         sum = sum

@@ -6,7 +6,7 @@ use crate::brdf::specular_glossiness::SpecularGlossiness;
 use crate::environment::panorama::Panorama;
 use crate::light::Light;
 use crate::light::unshadowed::{Desk, Mirrors, Receiver};
-use crate::real::Real;
+use crate::real::{Lanes, Real};
 use crate::sampling::sobol::Scramble;
 use crate::transform::orthonormal_basis::Frame;
 use crate::vec::Vec3;
@@ -23,6 +23,15 @@ pub enum Method {
     Representative,
     /// All of the light as if it came from its middle.
     Point,
+}
+
+/// A share in [0, 1]: what roundings put beyond is brought back, what is farther is NaN.
+#[inline(always)]
+pub fn share<V: Lanes>(x: V) -> V {
+    let (zero, one, slack) = (x.num(0.0), x.num(1.0), x.num(1e-5));
+    let held = V::select(one.less(x), one, V::select(x.less(zero), zero, x));
+    let near = (x - held).less_eq(slack) & (held - x).less_eq(slack);
+    V::select(near, held, x.like(V::Elem::NAN))
 }
 
 /// A point of a surface as it is seen.
@@ -71,7 +80,7 @@ impl<T: Real> Source<'_, T> {
         match self {
             Source::Light(light) => {
                 let s = light.sight(from, u)?;
-                Some((s.wi, light.radiance(), s.pdf))
+                Some((s.wi, light.shown(from, &s), s.pdf))
             }
             Source::Sky(sky) => {
                 let draw = sky.sample(u);
@@ -86,7 +95,7 @@ impl<T: Real> Source<'_, T> {
         match self {
             Source::Light(light) => {
                 let s = light.meet(from, wi)?;
-                Some((light.radiance(), s.pdf))
+                Some((light.shown(from, &s), s.pdf))
             }
             Source::Sky(sky) => Some(sky.eval_and_pdf(wi)),
         }
@@ -127,12 +136,11 @@ impl<T: Real> Site<'_, T> {
         if !self.is_seen() {
             return none;
         }
-        let half = [T::of(0.5), T::of(0.5)];
         // Towards the middle of an area, evenly drawn.
         let mut middle = None;
         if let Source::Light(light) = source {
             if light.has_outline() {
-                middle = light.sight(self.point, half);
+                middle = light.middle(self.point);
             }
             let mut single = !light.has_area();
             let mut beam = None;

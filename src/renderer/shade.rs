@@ -11,7 +11,7 @@
 
 use super::lanes::{self, LANES};
 pub use super::lit::Method;
-use super::lit::{Sampling, Site, Source, lobes};
+use super::lit::{Sampling, Site, Source, lobes, share};
 use crate::brdf::{Bsdf, Row};
 use crate::dispatch;
 use crate::environment::panorama::Panorama;
@@ -73,7 +73,7 @@ impl<T: Real> Surfaces<'_, T> {
     #[inline(always)]
     pub fn color(&self, i: usize) -> Vec3<T> {
         match self.colors {
-            Some(colors) => colors[i].into(),
+            Some(colors) => Vec3::new(share(colors[i][0]), share(colors[i][1]), share(colors[i][2])),
             None => Vec3::splat(T::one()),
         }
     }
@@ -155,6 +155,12 @@ fn body<T: Real, S: Simd>(
                 out[at + k] = [T::zero(); 3];
                 continue;
             };
+            if let Some(faces) = surfaces.faces
+                && !(Vec3::from(faces[i]).length_squared() > T::zero())
+            {
+                out[at + k] = [T::NAN; 3];
+                continue;
+            }
             if let Some(group) = &group
                 && others == 0
             {
@@ -188,7 +194,7 @@ fn body<T: Real, S: Simd>(
                 let arriving = site.under(source, method, stream, &sampling, &mut desk);
                 sum = sum
                     + match fraction {
-                        Some(fraction) => arriving * fraction[i],
+                        Some(fraction) => arriving * share(fraction[i]),
                         None => arriving,
                     };
             }

@@ -56,5 +56,9 @@ def test_errors_name_the_argument():
         sl.image.gaussian_filter(image, 1.0, border="mirror")
     with pytest.raises(ValueError, match="truncate"):
         sl.image.gaussian_filter(image, 1.0, truncate=-1)
+    with pytest.raises(ValueError, match="truncate: expected a reach"):
+        sl.image.gaussian_filter(image, 1.0, truncate=1e9)
+    with pytest.raises(ValueError, match="sigma: expected a reach"):
+        sl.image.gaussian_filter(image, 1e9)
     with pytest.raises(TypeError, match="image"):
         sl.image.gaussian_filter(np.ones((4, 4), np.uint8), 1.0)

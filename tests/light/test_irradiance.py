@@ -151,3 +151,23 @@ def test_disks_shine_from_their_front_and_spheres_outwards():
     sphere = sl.light.SphereLight((0, 1, 0), 0.5)
     assert sl.light.irradiance(sphere, [0.1, 1.0, 0.2], [0.0, 1.0, 0.0]).max() == 0
     assert np.allclose(sl.light.irradiance(sl.light.AmbientLight((1, 2, 3)), *below), np.pi * np.array([1, 2, 3]))
+
+
+def test_sizes_and_brightness_that_no_square_holds_are_refused():
+    with pytest.raises(ValueError, match=r"edge_u: expected an edge of 1e-15 to 1e\+15 in length, got 1e-200"):
+        sl.light.RectLight((0, 0, 0), (1e-200, 0, 0), (0, 0, 1e-200))
+    with pytest.raises(ValueError, match="edge_v"):
+        sl.light.RectLight((0, 0, 0), (1, 0, 0), (0, 0, 1e200))
+    with pytest.raises(ValueError, match="radius"):
+        sl.light.DiskLight((0, 0, 0), (0, 1, 0), 1e-200)
+    with pytest.raises(ValueError, match="radius"):
+        sl.light.SphereLight((0, 0, 0), 1e200)
+    with pytest.raises(ValueError, match="intensity: expected channels of at most"):
+        sl.light.PointLight((0, 0, 0), (1e300, 0, 0))
+    # Small enough for both precisions, and held by them.
+    for edge in (1e-15, 1e15):
+        light = sl.light.RectLight((0, edge, 0), (edge, 0, 0), (0, 0, edge))
+        for dtype in (np.float32, np.float64):
+            got = sl.light.irradiance(light, np.zeros(3, dtype), np.array([0, 1, 0], dtype))
+            # Four squares with a corner above the point, half as wide as far: 2 A atan A each, A = 1/√5.
+            assert got == pytest.approx(4 / 5**0.5 * np.arctan(1 / 5**0.5), rel=1e-5)

@@ -57,6 +57,7 @@ def test_a_mesh_refuses_what_it_cannot_hold():
     p = np.zeros((3, 3))
     for arguments, match in [
         (([[0, 0, 0], [0, np.nan, 0]], [[0, 1, 1]]), "positions: vertex 1 is not finite"),
+        ((p, [[0, 1, 2]], None, None, np.full((3, 3), 1.1)), "colors: vertex 0 is not in"),
         ((p, [[0, 1, 3]]), r"faces: index 3 at \(0, 2\)"),
         ((p, [[0, 1, -1]]), "faces: index -1"),
         ((p, [[0, 1]]), r"faces: expected shape \(m, 3\)"),

@@ -118,3 +118,34 @@ def test_frequencies_agree_on_a_matte_plane_and_part_at_highlights(frequency):
             assert len(np.unique(frame.radiance[frame.face == face], axis=0)) == 1
     with pytest.raises(ValueError, match="frequency"):
         sl.plan(ball, (8, 8), frequency="sometimes")
+
+
+def test_each_light_has_its_own_method_where_that_is_cheaper():
+    """A lamp near a glossy floor needs cosines or samples; one far away is a point, whatever the other needs."""
+    near = RectLight((0, 0.6, -0.5), (1.5, 0, 0), (0, 0, 0.8), (5, 5, 5))
+    far = RectLight((40, 60, 20), (1, 0, 0), (0, 0.3, 0.8), (30000, 30000, 30000))
+    glossy = Material((0.9, 0.8, 0.6), metallic=1.0, roughness=0.5)
+    camera = Camera((0.3, 1.0, 3.0), (0, 0, 0.1), fov_y=0.35)
+    scene = Scene(Instance(sl.mesh.plane(20.0), None, glossy), [near, far], camera)
+    plan = sl.plan(scene, (32, 18))
+    (way,) = plan.shading
+    methods = [m for m, _ in way.by_light]
+    assert methods[1] == "point" and methods[0] != "point", str(plan)
+    assert way.error <= 0.02 and "by light" in str(plan) and "the cheapest for each light" in str(plan)
+    frame = sl.render(scene, plan)
+    traced = sl.pathtrace.path_trace(
+        scene, (32, 18), 256, max_depth=1, filter=sl.pathtrace.PixelFilter("box", 1e-3), seed=7
+    )
+    apart = np.sqrt(np.mean((frame.radiance - traced.radiance) ** 2)) / traced.radiance.mean()
+    assert apart < 1.5 * way.error + 1.2 * np.sqrt(traced.variance.mean()) / traced.radiance.mean()
+    # The same at vertices, light by light.
+    assert np.isfinite(sl.render(scene, sl.plan(scene, (32, 18), frequency="gouraud")).radiance).all()
+
+
+def test_layers_are_noted_whether_they_matter_or_not():
+    coated = brdf.Principled((0.6, 0.1, 0.1), roughness=0.8, clearcoat=1.0, sheen=0.0)
+    assert "clear coat" in way(coated, LAMP).reason and "sheen" not in way(coated, LAMP).reason
+    cloth = brdf.Principled((0.6, 0.1, 0.1), roughness=1.0, specular=0.0, sheen=1.0)
+    assert "with its sheen: no simpler model has that" in way(cloth, LAMP).reason
+    faint = way(brdf.Principled((0.6, 0.1, 0.1), roughness=1.0, specular=0.0, sheen=1e-6), LAMP, max_error=0.5)
+    assert faint.kind != "principled" and "nor its sheen" in faint.reason

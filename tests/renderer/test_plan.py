@@ -195,3 +195,24 @@ def test_wrong_kinds_are_named():
         sl.plan(scene, (5, 5, 5))
     with pytest.raises(TypeError, match="evidence"):
         sl.plan(scene, evidence="x", max_error=0.1)
+
+
+def test_plans_of_wrong_kinds_are_named():
+    scene = Scene([GROUND, BOX], AREA, CAMERA)
+    with pytest.raises(TypeError, match="passes: expected a sequence of Pass, got str in it"):
+        sl.renderer.Plan(("g-buffer",), (), (32, 18))
+    with pytest.raises(TypeError, match="passes: expected a sequence of Pass, got NoneType"):
+        sl.renderer.Plan(None, (), (32, 18))
+    with pytest.raises(TypeError, match="left_out"):
+        sl.renderer.Plan((), ("tone map",), (32, 18))
+    with pytest.raises(TypeError, match="shading"):
+        sl.renderer.Plan((), (), (32, 18), 1, ("diffuse",))
+    with pytest.raises(TypeError, match="size"):
+        sl.renderer.Plan((), (), None)
+    with pytest.raises(TypeError, match="lights"):
+        sl.renderer.Plan((), (), (32, 18), "one")
+    for wrong in ({"name": 3}, {"reason": None}, {"settings": [1]}, {"settings": {"lights": "0"}}):
+        with pytest.raises(TypeError, match=next(iter(wrong))):
+            sl.renderer.Pass(**{"name": "direct light", "reason": "", **wrong})
+    with pytest.raises(TypeError, match="plan: expected a Plan"):
+        sl.render(scene, [sl.renderer.Pass("g-buffer", "")])

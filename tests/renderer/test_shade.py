@@ -177,3 +177,49 @@ def test_a_panorama_is_the_ambient_light_that_it_holds():
         got = sl.renderer.shade(points, normals, material, [], wo=wo, environment=even, samples=1024)
         exact = sl.renderer.shade(points, normals, material, AmbientLight((0.7, 0.7, 0.7)), wo=wo, samples=1024)
         assert np.allclose(got, exact, rtol=0.02)
+
+
+@pytest.mark.parametrize("light", [PUNCTUAL["point"], AREAS["rect"]], ids=["point", "rectangle"])
+def test_shares_beyond_their_range_are_nan_where_they_are(light):
+    points, normals, wo = receivers(24)
+    matte, ones = MATERIALS["metallic roughness"], np.ones(24)
+
+    def shaded(**given):
+        return sl.renderer.shade(points, normals, matte, light, wo=wo, **given)
+
+    whole = shaded(colors=np.ones((24, 3)), geometric_normals=normals, lit=[ones])
+    for bad in (-0.1, 1.1, np.nan, np.inf):
+        lit, colors = ones.copy(), np.ones((24, 3))
+        lit[5], colors[6, 1] = bad, bad
+        got = shaded(colors=colors, geometric_normals=normals, lit=[lit])
+        assert np.isnan(got[5]).all() and np.isnan(got[6]).any()
+        assert np.array_equal(np.delete(got, [5, 6], 0), np.delete(whole, [5, 6], 0))
+    # Roundings are no reason.
+    near = shaded(colors=np.full((24, 3), 1 + 1e-6), geometric_normals=normals, lit=[ones + 1e-6])
+    assert np.array_equal(near, whole)
+
+
+@pytest.mark.parametrize("bad", [0.0, np.nan])
+@pytest.mark.parametrize("light", [PUNCTUAL["point"], AREAS["rect"]], ids=["point", "rectangle"])
+def test_a_face_without_a_normal_is_nan(light, bad):
+    points, normals, wo = receivers(24)
+    faces = normals.copy()
+    faces[3] = bad
+    got = sl.renderer.shade(points, normals, MATERIALS["diffuse"], light, wo=wo, geometric_normals=faces)
+    whole = sl.renderer.shade(points, normals, MATERIALS["diffuse"], light, wo=wo, geometric_normals=normals)
+    assert np.isnan(got[3]).all() and np.array_equal(np.delete(got, 3, 0), np.delete(whole, 3, 0))
+
+
+@pytest.mark.parametrize("dtype", [np.float32, np.float64])
+def test_a_point_light_at_hand_is_finite(dtype):
+    points, normals, wo = receivers(24, dtype=dtype)
+    for away in (0.0, 1e-310, 1e-170, 1e-30, 1e-20, 1e-10, 1e-3):
+        light = sl.light.PointLight((float(points[2, 0]), float(points[2, 1]) + away, float(points[2, 2])), (9, 9, 9))
+        near = sl.light.PointLight((0, away, 0), (9, 9, 9))
+        got = sl.renderer.shade(points, normals, MATERIALS["diffuse"], light, wo=wo)
+        assert np.isfinite(got).all()
+        for n in (1, 9):
+            at = np.zeros((n, 3), dtype)
+            up = np.broadcast_to(np.asarray([0, 1, 0], dtype), at.shape)
+            assert np.isfinite(sl.renderer.shade(at, up, MATERIALS["diffuse"], near, wo=up)).all()
+            assert np.isfinite(sl.light.irradiance(near, at, up)).all()

@@ -120,3 +120,9 @@ def test_flattened_instances_have_finite_normals():
     assert np.isfinite(flat.normals).all()
     assert np.all(np.isclose(length, 1) | (length == 0)) and (length > 0).any()
     assert not Scene(Instance(box(), scale([0.0, 0.0, 0.0]))).flatten().normals.any()
+
+
+def test_no_instances_at_all_are_named():
+    for nothing in (None, 5):
+        with pytest.raises(TypeError, match="instances: expected Instance or Mesh, or several"):
+            Scene(nothing)

@@ -205,12 +205,12 @@ def ltc(
     core = {n: (_arrays.vectors(n, v, 3, dtype), 1) for n, v in vectors.items()}
     core["alpha"] = (_arrays.floats("alpha", alpha, dtype), 0)
     shape, flat = _arrays.broadcast(core)
-    parts = np.empty((len(flat[0]), 2), dtype)
+    parts = np.empty((len(flat[0]), 5), dtype)
     own = None if table is None else table._lobes()
     _kernels.ltc_light(_table("light", light), own, flat, parts)
-    base, edge = (np.ascontiguousarray(p).reshape(shape) for p in parts.T)
+    base, edge = (np.ascontiguousarray(p).reshape(shape) for p in parts.T[:2])
     low, high = (_colors(n, v, dtype) for n, v in (("f0", f0), ("f90", f90)))
-    radiance = (low * base[..., None] + (high - low) * edge[..., None]) * np.asarray(light.radiance, dtype)
+    radiance = (low * base[..., None] + (high - low) * edge[..., None]) * parts[:, 2:].reshape(*shape, 3)
     return Ltc(radiance, base, edge) if full_output else radiance
 
 

@@ -64,8 +64,13 @@ def flux(light: Light) -> NDArray[np.float64]:
         return np.multiply(light.intensity, math.pi * sum(depths))
     if isinstance(light, RectLight | DiskLight | SphereLight | PolygonLight):
         sides = 2 if getattr(light, "two_sided", False) else 1
-        return np.multiply(light.radiance, math.pi * light.area * sides)
+        return np.multiply(_mean(light), math.pi * light.area * sides)
     raise TypeError(f"light: expected a light with a place, whose flux is finite, got {type(light).__name__}")
+
+
+def _mean(light: Any) -> Any:
+    """The radiance of an area light over its area."""
+    return light.mean_radiance if isinstance(light, RectLight) else light.radiance
 
 
 def intensity(light: Light, directions: ArrayLike) -> Floats:
@@ -111,7 +116,7 @@ def intensity(light: Light, directions: ArrayLike) -> Floats:
     elif isinstance(light, RectLight | DiskLight | PolygonLight):
         axis = np.asarray(light.normal, np.float64) / np.linalg.norm(light.normal)
         cosine = w @ axis
-        share, color = light.area * (np.abs(cosine) if light.two_sided else np.maximum(cosine, 0)), light.radiance
+        share, color = light.area * (np.abs(cosine) if light.two_sided else np.maximum(cosine, 0)), _mean(light)
     elif isinstance(light, SphereLight):
         share, color = ones * math.pi * light.radius**2, light.radiance
     else:
@@ -153,8 +158,8 @@ def with_flux(light: Kind, watts: ArrayLike) -> Kind:
     )
     if unit is None:
         raise TypeError(f"light: expected a light with a place, got {type(light).__name__}")
-    if not unit[0] > 0:
-        raise ValueError("light: expected one that can send a flux, got a spot of angle zero")
+    if not min(unit) > 0:
+        raise ValueError("light: expected one that can send a flux, got a spot of angle zero or a black picture")
     changes = {name: tuple((wanted / unit).tolist())}
     return dataclasses.replace(light, **changes)
 

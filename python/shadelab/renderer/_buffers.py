@@ -54,9 +54,15 @@ def g_buffer(arrays: Any, camera: Any, size: tuple[int, int]) -> Seen:
     )
     covered = drawn.face >= 0
     face, points, shading = drawn.face[covered], drawn.position[covered], drawn.normal[covered]
-    geometric = np.nan_to_num(mesh.face_normals(arrays.positions, arrays.faces))[face]
-    shading = np.where(shading.any(-1, keepdims=True), shading, geometric)
+    flat = np.nan_to_num(mesh.face_normals(arrays.positions, arrays.faces))
+    geometric = flat[face]
     away = points - np.asarray(camera.eye, np.float32)
+    if not flat.any(-1).all():
+        # Faces so small that they have no normal take that of the vertices, else face the eye.
+        towards = -away / np.linalg.norm(away, axis=-1, keepdims=True)
+        spare = np.where(shading.any(-1, keepdims=True), shading, towards)
+        geometric = np.where(geometric.any(-1, keepdims=True), geometric, spare)
+    shading = np.where(shading.any(-1, keepdims=True), shading, geometric)
     inside = np.einsum("ij,ij->i", geometric, away) > 0
     geometric = np.where(inside[:, None], -geometric, geometric)
     shading = np.where(np.einsum("ij,ij->i", shading, geometric)[:, None] < 0, -shading, shading)

@@ -87,6 +87,8 @@ def _is_convex(
 
 
 def brightness(lamp: Any) -> float:
+    if isinstance(lamp, light.RectLight):
+        return max(lamp.mean_radiance)
     emitted = next(getattr(lamp, n) for n in ("radiance", "intensity", "irradiance") if hasattr(lamp, n))
     return float(np.max(emitted))
 

@@ -31,6 +31,9 @@ _SAMPLE = {"metallic roughness": 280.0, "specular glossiness": 280.0}
 _SAMPLE_OTHER = 350.0
 
 
+PUNCTUAL = light.PointLight | light.SpotLight | light.DirectionalLight
+
+
 class Candidate(NamedTuple):
     """A way to shade a material."""
 
@@ -71,7 +74,8 @@ def _models(material: Any) -> list[tuple[Any, str]]:
         found.append((stand_in, "metallic roughness"))
         if getattr(model, "compensation", "none") != "none":
             plain = replace(model, compensation="none")
-            found.append((plain, _named(plain)))
+            if plain != stand_in:
+                found.append((plain, _named(plain)))
     name = _named(model)
     if name == "diffuse":
         return [(model, name)]
@@ -138,7 +142,7 @@ def places(arrays: Any, camera: Any, lamps: list[Any]) -> list[_Places]:
 
 def _measured(where: _Places, ways: list[Candidate], material: Any, bound: float) -> list[tuple[Candidate, float]]:
     """Candidates with their errors, until one keeps the bound."""
-    areas = [x for x in where.lamps if not isinstance(x, light.PointLight | light.SpotLight | light.DirectionalLight)]
+    areas = [x for x in where.lamps if not isinstance(x, PUNCTUAL)]
     first, second = (where.shade(material, "sampling", _REFERENCE if areas else 0, seed) for seed in (101, 202))
     scale = max(float((first + second).mean()) / 2, 1e-300)
     found = []
@@ -157,7 +161,7 @@ def shadings(
 ) -> tuple[Shading, ...]:
     """How each material of a scene is shaded."""
     lamps = where[0].lamps if where else []
-    areas = sum(not isinstance(x, light.PointLight | light.SpotLight | light.DirectionalLight) for x in lamps)
+    areas = sum(not isinstance(x, PUNCTUAL) for x in lamps)
     ambient = sum(isinstance(x, light.AmbientLight) for x in lamps)
     beams = len(lamps) - areas
     bound = DEFAULT_ERROR if max_error is None else max_error
@@ -184,10 +188,55 @@ def shadings(
         limits = limits or [bound]
         bound = next((x for x in limits if milliseconds(chosen(x)) <= budget_ms), limits[-1])
     picks = chosen(bound)
-    return tuple(
+    told = [
         _told(material, pick, found, bound, beams, areas)
         for material, pick, found in zip(arrays.materials, picks, tried, strict=True)
-    )
+    ]
+    if areas > 1:
+        told = [
+            told_ if pick is None else _by_light(told_, pick, spot, material, bound)
+            for told_, pick, spot, material in zip(told, picks, where, arrays.materials, strict=True)
+        ]
+    return tuple(told)
+
+
+def _by_light(told: Shading, pick: tuple[Candidate, float], where: _Places, material: Any, bound: float) -> Shading:
+    """A material's choice with the cheapest method for each light, where that is cheaper and keeps the bound."""
+    way, error = pick
+    if error > bound:
+        return told
+    lamps, areas = where.lamps, [not isinstance(x, PUNCTUAL) for x in where.lamps]
+    # Biases may add up: each light has its part of the bound.
+    part = bound / sum(areas)
+    halves = [[where.shade(material, "sampling", _REFERENCE, s, [x]) for x in lamps] for s in (101, 202)]
+    scale = max(float(np.sum(halves) / 2 / halves[0][0].size), 1e-300)
+
+    def off(value: Any, first: Any, second: Any) -> float:
+        return max(float(np.mean((value - first) * (value - second))), 0.0) ** 0.5 / scale
+
+    chosen: list[tuple[str, int]] = []
+    total: Any = 0.0
+    for i, lamp in enumerate(lamps):
+        picked, value = way, None
+        even = int(isinstance(lamp, light.AmbientLight))
+        for other in candidates(way.model, 0, 1, even) if areas[i] else ():
+            # The models before it do not suffice for all lights together.
+            if other.name != way.name or other.cost(0, 1) >= way.cost(0, 1):
+                continue
+            value = where.shade(other.model, other.method, other.samples, 303, [lamp])
+            if off(value, halves[0][i], halves[1][i]) <= part:
+                picked = other
+                break
+            value = None
+        if value is None:
+            value = where.shade(way.model, way.method, way.samples, 303, [lamp])
+        chosen.append((picked.method, picked.samples) if areas[i] else (way.method, way.samples))
+        total = total + value
+    apart = off(total, np.sum(halves[0], 0), np.sum(halves[1], 0))
+    if len({c for c, area in zip(chosen, areas, strict=True) if area}) < 2 or apart > bound:
+        return told
+    reason = told.reason + ("; " if told.reason else "") + "the cheapest for each light"
+    return replace(told, error=apart, reason=reason, by_light=tuple(chosen))
 
 
 def _told(
@@ -205,8 +254,11 @@ def _told(
         return Shading(label, material, own, "sampling", 16, float("nan"), "out of view: not measured")
     way, error = pick
     reasons = []
+    layers = [words for name, words in _LAYERS.items() if getattr(material, name, 0) > 0]
     if way.name != own:
-        reasons.append(f"{own} is not needed")
+        reasons.append(f"{own} is not needed" + (f", nor its {' and '.join(layers)}" if layers else ""))
+    elif layers:
+        reasons.append(f"with its {' and '.join(layers)}: no simpler model has that")
     if areas:
         reasons.append(_WHY.get(way.method, "") if way.name != "diffuse" or way.method == "point" else _WHY["closed"])
     elif beams:
@@ -221,6 +273,7 @@ def _told(
     return Shading(label, way.model, way.name, way.method, way.samples, error, "; ".join(r for r in reasons if r))
 
 
+_LAYERS = {"sheen": "sheen", "clearcoat": "clear coat"}
 _WHY = {
     "point": "lights small or far enough to be points",
     "representative_point": "one point of each area light stands for it",

@@ -9,6 +9,8 @@ from .. import _arrays, light
 from ._facts import Facts, beyond_one_map, outline, resolution_for, widest_penumbra
 from .passes import LeftOut, Pass
 
+# Rays of each pixel into the hemisphere.
+_OCCLUSION = 32
 _TECHNIQUES = (
     "hard", "pcf", "pcss", "variance", "exponential_variance", "moment", "variance_soft", "ray_traced",
 )  # fmt: skip
@@ -39,8 +41,9 @@ def shadow_passes(
     if facts.unshadowed:
         return [], [LeftOut(f"shadow{suffix}", facts.unshadowed)]
     if isinstance(lamp, light.AmbientLight):
-        why = "it comes from everywhere: what hides some of it is occlusion, not shadow"
-        return [], [LeftOut(f"shadow{suffix}", why)]
+        why = "it comes from everywhere: rays find what hides some of it, its occlusion"
+        none = LeftOut(f"shadow map{suffix}", "no map sees what comes from everywhere")
+        return [Pass(f"shadow{suffix}", why, {"technique": "ray_traced", "samples": _OCCLUSION})], [none]
     left_out: list[LeftOut] = []
     settings: dict[str, Any] = {}
     width, footprint = 0.0, facts.nearest * facts.pixel

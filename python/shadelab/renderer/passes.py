@@ -8,6 +8,8 @@ from collections.abc import Mapping
 from dataclasses import dataclass, field
 from typing import Any
 
+from ._facts import checked_size
+
 __all__ = ["LeftOut", "Pass", "Plan", "Shading"]
 
 
@@ -18,6 +20,16 @@ class Pass:
     name: str
     reason: str
     settings: Mapping[str, Any] = field(default_factory=dict)
+
+    def __post_init__(self) -> None:
+        for name, value in (("name", self.name), ("reason", self.reason)):
+            if not isinstance(value, str):
+                raise TypeError(f"{name}: expected a string, got {type(value).__name__}")
+        if not isinstance(self.settings, Mapping):
+            raise TypeError(f"settings: expected a mapping, got {type(self.settings).__name__}")
+        lights = self.settings.get("lights", ())
+        if not isinstance(lights, list | tuple) or not all(isinstance(i, int) and i >= 0 for i in lights):
+            raise TypeError(f"settings: expected indices as lights, got {lights!r}")
 
 
 @dataclass(frozen=True)
@@ -46,6 +58,8 @@ class Shading:
 
     Measured for the plan, beside the material itself under many samples."""
     reason: str
+    by_light: tuple[tuple[str, int], ...] = ()
+    """Method and samples for each light of the direct pass, where they differ; empty: the same for all."""
 
 
 @dataclass(frozen=True)
@@ -59,6 +73,19 @@ class Plan:
     """How many lights the scene has that it was made for; None if it does not say."""
     shading: tuple[Shading, ...] = ()
     """Of each material of the flattened scene; empty: all by themselves, by samples."""
+
+    def __post_init__(self) -> None:
+        for name, kind in (("passes", Pass), ("left_out", LeftOut), ("shading", Shading)):
+            items = getattr(self, name)
+            if not isinstance(items, list | tuple):
+                raise TypeError(f"{name}: expected a sequence of {kind.__name__}, got {type(items).__name__}")
+            for item in items:
+                if not isinstance(item, kind):
+                    raise TypeError(f"{name}: expected a sequence of {kind.__name__}, got {type(item).__name__} in it")
+            object.__setattr__(self, name, tuple(items))
+        if self.lights is not None and not isinstance(self.lights, int):
+            raise TypeError(f"lights: expected a count or None, got {type(self.lights).__name__}")
+        object.__setattr__(self, "size", checked_size(self.size))
 
     def find(self, name: str) -> Pass | None:
         """The pass of a name, None if it was left out.
@@ -89,6 +116,9 @@ class Plan:
         how = "" if shading.kind == "diffuse" and shading.method != "point" else shading.method.replace("_", " ")
         if how == "sampling":
             how = f"{shading.samples} samples" if shading.samples else ""
+        if shading.by_light:
+            each = [f"{n} samples" if m == "sampling" and n else m.replace("_", " ") for m, n in shading.by_light]
+            how = "by light: " + " / ".join("exact" if x == "sampling" else x for x in each)
         error = "" if math.isnan(shading.error) else f", error {shading.error:.1%}"
         return f"{shading.material}: {shading.kind}" + (f", {how}" if how else "") + error
 

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import time
 from collections.abc import Callable, Mapping
+from dataclasses import replace
 from typing import Any
 
 import numpy as np
@@ -87,8 +88,9 @@ def render(
     for each material, or by the materials themselves if it names none) times the lit fraction that the plan's technique
     finds, plus the background's or a panorama's light as if nothing hid it, plus emission. No light is reflected twice,
     and what passes a body ends at its far side. Lights themselves are not seen, though `shadelab.pathtrace.path_trace`
-    shows those with an area: the plan lists those in view as left out. Where a light is wholly visible the result is
-    that of `path_trace` with one bounce (`max_depth=1`) within the errors that `Plan.shading` states.
+    shows those with an area: the plan lists those in view as left out. Ambient light is seen where nothing else is, and
+    what hides some of it is found by rays, as by the path tracer. Where a light is wholly visible the result is that of
+    `path_trace` with one bounce (`max_depth=1`) within the errors that `Plan.shading` states.
 
     Examples
     --------
@@ -142,8 +144,9 @@ def render(
                 clock.done(p.name)
                 continue
             coarse = Coarse(seen, arrays, eye, frequency)
-            for i in p.settings["lights"]:
-                few = _shaded(coarse.receivers, arrays, eye, [lamps[i]], [None], p.settings, seed, chosen.shading)
+            for at, i in enumerate(p.settings["lights"]):
+                ways = tuple(replace(w, by_light=w.by_light[at : at + 1]) for w in chosen.shading)
+                few = _shaded(coarse.receivers, arrays, eye, [lamps[i]], [None], p.settings, seed, ways)
                 radiance += coarse.spread(few) * (fractions[i][:, None] if i in fractions else 1)
         elif kind == "environment":
             radiance += _shaded(seen, arrays, eye, [], [], p.settings, seed, (), scene.environment)
@@ -215,29 +218,40 @@ def _shaded(
     environment: Any = None,
 ) -> Floats:
     """What lights send to the eye by all that is seen, its materials by themselves or as a plan has them."""
-    return shade(
-        seen.points,
-        seen.shading,
-        [way.model for way in ways] or arrays.materials,
-        lamps,
-        eye=eye,
-        material_ids=seen.material,
-        colors=seen.colors,
-        geometric_normals=seen.geometric,
-        inside=seen.inside,
-        lit=lit,
-        environment=environment,
-        method=[way.method for way in ways] or "sampling",
-        samples=[way.samples for way in ways] or settings["samples"],
-        seed=seed,
-    )
+    # Lights for which every material has the same method as for others go together.
+    groups: dict[Any, list[int]] = {}
+    for i in range(len(lamps)):
+        how = tuple(way.by_light[i] if way.by_light else (way.method, way.samples) for way in ways)
+        groups.setdefault(how, []).append(i)
+    total: Any = 0.0
+    for number, (how, members) in enumerate((groups or {tuple((w.method, w.samples) for w in ways): []}).items()):
+        total = total + shade(
+            seen.points,
+            seen.shading,
+            [way.model for way in ways] or arrays.materials,
+            [lamps[i] for i in members],
+            eye=eye,
+            material_ids=seen.material,
+            colors=seen.colors,
+            geometric_normals=seen.geometric,
+            inside=seen.inside,
+            lit=[lit[i] for i in members],
+            environment=environment if number == 0 else None,
+            method=[method for method, _ in how] or "sampling",
+            samples=[samples for _, samples in how] or settings["samples"],
+            seed=(seed + number) % 2**64,
+        )
+    return np.asarray(total)
 
 
 def _sky(scene: Any, size: tuple[int, int]) -> Floats:
     """The picture of what is behind everything."""
+    ambient = [lamp.radiance for lamp in scene.lights if isinstance(lamp, light.AmbientLight)]
+    even = np.sum([scene.background, *ambient], 0).astype(np.float32)
     if scene.environment is None:
-        return np.broadcast_to(np.asarray(scene.background, np.float32), (size[1], size[0], 3)).copy()
-    return np.ascontiguousarray(scene.environment.eval(scene.camera.rays(size, dtype=np.float32)[1]), np.float32)
+        return np.broadcast_to(even, (size[1], size[0], 3)).copy()
+    seen = scene.environment.eval(scene.camera.rays(size, dtype=np.float32)[1])
+    return np.ascontiguousarray(seen + even, np.float32)
 
 
 def _empty_frame(chosen: Plan, picture: Floats, lights: int, clock: _Clock) -> Frame:

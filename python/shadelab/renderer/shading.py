@@ -59,13 +59,14 @@ def shade(
     material_ids : array_like of int, shape (...), optional
         Of each point; a negative one marks no surface, whose radiance is zero.
     colors : array_like, shape (..., 3), optional
-        By which the materials' colours are multiplied.
+        By which the materials' colours are multiplied, in [0, 1]; NaN where one is beyond.
     geometric_normals : array_like, shape (..., 3), optional
-        Unit normals of the faces, on the side that is seen: light from below them does not arrive.
+        Unit normals of the faces, on the side that is seen: light from below them does not arrive. NaN where one is
+        zero or NaN.
     inside : array_like of bool, shape (...), optional
         Where a body that light passes is seen from within.
     lit : sequence of array_like of shape (...), or of None, optional
-        Of each light the fraction that arrives; None: all of it.
+        Of each light the fraction that arrives, in [0, 1], NaN where one is beyond; None: all of it.
     environment : Environment, optional
         A panorama that shines as well, with nothing before it.
     method : {"sampling", "ltc", "representative_point", "point"}, or sequence of them

@@ -15,6 +15,7 @@ pub(crate) mod fit;
 
 use super::Light;
 use super::polygon::{self, doubled};
+use super::textured::Textured;
 use crate::dispatch;
 use crate::parallel::{self, Interrupted, Watch};
 use crate::real::{Lanes, Real};
@@ -121,6 +122,12 @@ impl Lobe {
     /// seen. `scratch` holds corners on the way.
     #[inline(always)]
     pub fn share(&self, corners: impl Iterator<Item = Vec3<f64>>, scratch: &mut Vec<Vec3<f64>>) -> f64 {
+        self.seen(corners, scratch).z
+    }
+
+    /// [`Lobe::share`], and beside it the middle of what is filled: the mean direction of the polygon, straightened.
+    #[inline(always)]
+    fn seen(&self, corners: impl Iterator<Item = Vec3<f64>>, scratch: &mut Vec<Vec3<f64>>) -> Vec3<f64> {
         scratch.clear();
         let mut first = None;
         let mut before = Vec3::splat(0.0);
@@ -145,9 +152,9 @@ impl Lobe {
             push(before, first);
         }
         if scratch.len() < 3 {
-            return 0.0;
+            return Vec3::splat(0.0);
         }
-        polygon::irradiance(scratch) / std::f64::consts::PI
+        polygon::vector_irradiance(scratch) * (1.0 / std::f64::consts::PI)
     }
 }
 
@@ -161,20 +168,80 @@ pub fn mirrored(
     alpha: f64,
     scratch: &mut Vec<Vec3<f64>>,
 ) -> [f64; 2] {
-    // Turned about the normal so that the eye lies above x; straight above any turn serves.
-    let across = (wo.x * wo.x + wo.y * wo.y).sqrt();
-    let (cos, sin) = if across > 0.0 { (wo.x / across, wo.y / across) } else { (1.0, 0.0) };
-    let lobe = table.lobe(alpha, wo.z);
+    let (lobe, turn) = (table.lobe(alpha, wo.z), Turn::of(wo));
     let turned = corners.map(
         #[inline(always)]
-        |c| {
-            let c = frame.local(c);
-            Vec3::new(cos * c.x + sin * c.y, cos * c.y - sin * c.x, c.z)
-        },
+        |c| turn.by(frame.local(c)),
     );
     // What a lobe has below the horizon GGX has above it.
     let share = lobe.share(turned, scratch) / lobe.above();
     [share * lobe.magnitude, share * lobe.grazing]
+}
+
+/// [`mirrored`] for a rectangle that shows a picture, with the mean radiance of what the lobe sees of it.
+#[inline(always)]
+pub fn mirrored_picture<T: Real>(
+    table: &Table,
+    light: &Textured<T>,
+    point: Vec3<f64>,
+    corners: impl Iterator<Item = Vec3<f64>>,
+    frame: &Frame<f64>,
+    wo: Vec3<f64>,
+    alpha: f64,
+    scratch: &mut Vec<Vec3<f64>>,
+) -> ([f64; 2], Vec3<f64>) {
+    let (lobe, turn) = (table.lobe(alpha, wo.z), Turn::of(wo));
+    let turned = corners.map(
+        #[inline(always)]
+        |c| turn.by(frame.local(c)),
+    );
+    let seen = lobe.seen(turned, scratch);
+    let share = seen.z / lobe.above();
+    let [corner, across, down] = light.edges(frame, point);
+    let straight =
+        [lobe.straighten(turn.by(corner)), lobe.straighten(turn.by(across)), lobe.straighten(turn.by(down))];
+    let color = light.picture.seen(straight[0], straight[1], straight[2], seen);
+    ([share * lobe.magnitude, share * lobe.grazing], color)
+}
+
+/// The mean radiance that a cosine lobe about the frame's z sees of a rectangle that shows a picture.
+#[inline(always)]
+pub fn diffuse_picture<T: Real>(
+    light: &Textured<T>,
+    point: Vec3<f64>,
+    corners: impl Iterator<Item = Vec3<f64>>,
+    frame: &Frame<f64>,
+    scratch: &mut Vec<Vec3<f64>>,
+) -> Vec3<f64> {
+    scratch.clear();
+    for corner in corners {
+        scratch.push(frame.local(corner));
+    }
+    let [corner, across, down] = light.edges(frame, point);
+    light.picture.seen(corner, across, down, polygon::vector_irradiance(scratch))
+}
+
+/// About the normal so that the eye lies above x; straight above any turn serves.
+#[derive(Clone, Copy)]
+struct Turn {
+    cos: f64,
+    sin: f64,
+}
+
+impl Turn {
+    #[inline(always)]
+    fn of(wo: Vec3<f64>) -> Self {
+        let across = (wo.x * wo.x + wo.y * wo.y).sqrt();
+        if across > 0.0 {
+            Turn { cos: wo.x / across, sin: wo.y / across }
+        } else {
+            Turn { cos: 1.0, sin: 0.0 }
+        }
+    }
+    #[inline(always)]
+    fn by(&self, v: Vec3<f64>) -> Vec3<f64> {
+        Vec3::new(self.cos * v.x + self.sin * v.y, self.cos * v.y - self.sin * v.x, v.z)
+    }
 }
 
 /// How many corners stand for a round light.
@@ -186,7 +253,7 @@ const ROUND: usize = 24;
 pub fn outline<T: Real>(light: &Light<T>, point: Vec3<f64>, corners: &mut Vec<Vec3<f64>>) -> bool {
     corners.clear();
     let (to, normal, two_sided) = match light {
-        Light::Rect(l) => {
+        Light::Rect(l) | Light::Textured(Textured { rect: l, .. }) => {
             for corner in l.corners() {
                 corners.push(doubled(corner) - point);
             }
@@ -237,7 +304,7 @@ fn round(center: Vec3<f64>, x: Vec3<f64>, y: Vec3<f64>, radius: f64, corners: &m
 }
 
 /// The mirrors' light from one area light at points with unit normals and directions to the eye: the parts of F0 and of
-/// F90 − F0, for unit radiance. NaN where alpha is not in (0, 1]; zero seen from below.
+/// F90 − F0, for unit radiance, and the radiance seen. NaN where alpha is not in (0, 1]; zero seen from below.
 pub fn ltc_many<T: Real>(
     watch: &mut dyn Watch,
     table: &Table,
@@ -246,8 +313,9 @@ pub fn ltc_many<T: Real>(
     normals: &[[T; 3]],
     wo: &[[T; 3]],
     alpha: &[T],
-    out: &mut [[T; 2]],
+    out: &mut [[T; 5]],
 ) -> Result<(), Interrupted> {
+    let even = doubled(light.radiance());
     parallel::for_each(
         watch,
         (points, normals, wo, alpha, out),
@@ -261,14 +329,21 @@ pub fn ltc_many<T: Real>(
                     let nan = (point + normal + eye).dot(Vec3::splat(0.0)) + alpha * 0.0;
                     let frame = Frame::about(normal);
                     let eye = frame.local(eye);
-                    out[i] = if nan.is_nan() || !(alpha > 0.0 && alpha <= 1.0) {
-                        [T::NAN; 2]
-                    } else if eye.z > 0.0 && outline(light, point, &mut corners) {
-                        mirrored(table, corners.iter().copied(), &frame, eye, alpha, &mut scratch)
-                            .map(|x| T::of(Lanes::max(x, 0.0)))
-                    } else {
-                        [T::zero(); 2]
-                    };
+                    if nan.is_nan() || !(alpha > 0.0 && alpha <= 1.0) {
+                        out[i] = [T::NAN; 5];
+                        continue;
+                    }
+                    let (mut parts, mut color) = ([0.0; 2], even);
+                    if eye.z > 0.0 && outline(light, point, &mut corners) {
+                        let corners = corners.iter().copied();
+                        (parts, color) = if let Light::Textured(light) = light {
+                            mirrored_picture(table, light, point, corners, &frame, eye, alpha, &mut scratch)
+                        } else {
+                            (mirrored(table, corners, &frame, eye, alpha, &mut scratch), even)
+                        };
+                    }
+                    let [base, edge] = [Lanes::max(parts[0], 0.0), Lanes::max(parts[1], 0.0)];
+                    out[i] = [T::of(base), T::of(edge), T::of(color.x), T::of(color.y), T::of(color.z)];
                 }
             })
         },

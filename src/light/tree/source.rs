@@ -2,6 +2,7 @@
 
 use crate::color::luminance::luminance;
 use crate::light::Light;
+use crate::light::textured::Textured;
 use crate::math;
 use crate::real::{Lanes, Real};
 use crate::vec::Vec3;
@@ -54,7 +55,7 @@ impl<T: Real> Source<T> {
             },
             Light::Directional { irradiance, .. } => anywhere(scene * luminance(*irradiance)),
             Light::Ambient { radiance } => anywhere(scene * four * pi * luminance(*radiance)),
-            Light::Rect(l) => {
+            Light::Rect(l) | Light::Textured(Textured { rect: l, .. }) => {
                 let power = pi * l.area * sides(l.two_sided) * luminance(l.radiance);
                 Self::of_flat(&l.corners(), l.normal, l.two_sided, power)
             }

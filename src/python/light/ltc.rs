@@ -14,7 +14,7 @@ fn table(given: Option<(&Bound<'_, PyAny>, usize)>) -> PyResult<Option<Table>> {
         .transpose()
 }
 
-/// `given`: points, normals, wo, alpha; `out`: the parts of F0 and of F90 − F0.
+/// `given`: points, normals, wo, alpha; `out`: the parts of F0 and of F90 − F0, and the radiance seen.
 #[pyfunction]
 pub fn ltc_light(
     py: Python<'_>,

@@ -1,6 +1,7 @@
 //! Bindings of `light`.
 
 mod ltc;
+mod picture;
 mod solid_angle;
 mod tree;
 
@@ -11,28 +12,47 @@ use crate::light::polygon_light::PolygonLight;
 use crate::light::rect::Rect;
 use crate::light::sphere::Sphere;
 use crate::light::spot::Spot;
+use crate::light::textured::Textured;
 use crate::light::unshadowed::{Receivers, Viewer};
 use crate::python::array::{In, unknown};
 use crate::real::Real;
 use crate::transform::orthonormal_basis::Frame;
 use crate::vec::Vec3;
 use numpy::Element;
+use picture::LightPicture;
 use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
 
-/// Lights from the numbers that `shadelab.light` packs: kind, how many numbers follow, and these.
+/// Lights from the numbers that `shadelab.light` packs: kind, how many numbers follow, and these; and, if some show
+/// pictures, a pair of the numbers and the pictures in both precisions.
 pub fn lights<T: Real>(table: &Bound<'_, PyAny>) -> PyResult<Vec<Light<T>>> {
-    let table = In::<f64>::of("lights", table)?;
+    let (table, shown) = match table.extract::<(Bound<'_, PyAny>, Vec<Bound<'_, PyAny>>)>() {
+        Ok((numbers, shown)) => (numbers, shown),
+        Err(_) => (table.clone(), Vec::new()),
+    };
+    let table = In::<f64>::of("lights", &table)?;
     let mut rest = table.slice()?;
-    let mut lights = Vec::new();
+    let (mut lights, mut shown) = (Vec::new(), shown.into_iter());
     while let [kind, count, values @ ..] = rest {
         let (own, others) =
             values.split_at_checked(*count as usize).ok_or_else(|| unknown("lights", "length"))?;
-        lights.push(light(*kind as i32, own)?);
+        let made = light(*kind as i32, own)?;
+        lights.push(match made {
+            Light::Rect(rect) if *kind == TEXTURED => {
+                let source = shown.next().ok_or_else(|| unknown("lights", "picture"))?;
+                // Asked for in the precision that is needed.
+                let held = source.call1((T::DOUBLE,))?;
+                Light::Textured(Textured::new(rect, held.cast::<LightPicture>()?.get().of::<T>()?))
+            }
+            made => made,
+        });
         rest = others;
     }
     Ok(lights)
 }
+
+/// The kind of rectangles that show a picture.
+const TEXTURED: f64 = 8.0;
 
 /// The one light of a table.
 pub fn one_light<T: Real>(table: &Bound<'_, PyAny>) -> PyResult<Light<T>> {
@@ -49,7 +69,7 @@ fn light<T: Real>(kind: i32, numbers: &[f64]) -> PyResult<Light<T>> {
     Ok(match kind {
         0 => Light::Point { position: vector(1), intensity: vector(0) },
         1 => Light::Directional { direction: unit(1), irradiance: vector(0) },
-        2 => Light::Rect(Rect::new(vector(1), vector(2), vector(3), vector(0), last(0) != 0.0)),
+        2 | 8 => Light::Rect(Rect::new(vector(1), vector(2), vector(3), vector(0), last(0) != 0.0)),
         3 => Light::Spot(Spot {
             position: vector(1),
             direction: unit(2),
@@ -135,6 +155,7 @@ pub mod light {
     #[pymodule_export]
     use super::{
         ltc::{ltc_fit, ltc_light, ltc_shipped},
+        picture::{LightPicture, light_picture},
         solid_angle::{polygon_solid_angle, solid_angle},
         tree::{chance, choose, chooser},
     };

@@ -27,11 +27,15 @@ class Floor:
 
 _PANEL = light.RectLight((0, 1.2, -0.5), (2, 0, 0), (0, 0.6, 0.8), (5, 5, 5))
 _WALL = light.RectLight((0, 0.5, -2), (3, 0, 0), (0, 1.0, 0), (5, 5, 5))
+# Stripes that grow brighter to one side, of the panel's mean.
+_STRIPES = np.repeat(np.arange(16) % 2 * np.arange(16) / 4.0, 4)[None, :, None] * np.ones((8, 1, 3))
+_SCREEN = light.RectLight((0, 1.2, -0.5), (2, 0, 0), (0, 0.6, 0.8), (5, 5, 5), texture=_STRIPES)
 _SCENES = {
     "panel, roughness 0.1": Floor(_PANEL, 0.1),
     "panel, roughness 0.3": Floor(_PANEL, 0.3),
     "panel, roughness 0.6": Floor(_PANEL, 0.6),
     "panel, roughness 1": Floor(_PANEL, 1.0),
+    "picture, roughness 0.3": Floor(_SCREEN, 0.3),
     "wall to the floor, roughness 0.3": Floor(_WALL, 0.3),
     "small panel, roughness 0.3": Floor(light.RectLight((0, 1.5, -1), (0.1, 0, 0), (0, 0, 0.1), (500,) * 3), 0.3),
     "sphere, roughness 0.3": Floor(light.SphereLight((0, 1, -0.5), 0.4, (5, 5, 5)), 0.3),
