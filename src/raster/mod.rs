@@ -29,7 +29,7 @@ pub(crate) mod tile;
 pub use g_buffer::{GBuffer, Surface, g_buffer};
 pub use interpolate::{Attributes, Seen, View, derivatives, interpolate};
 pub use pipeline::Options;
-pub use rasterize::{Visibility, rasterize, rasterize_depth};
+pub use rasterize::{Visibility, rasterize, rasterize_behind, rasterize_depth, rasterize_pages};
 pub use render_lambert::{Shading, render_lambert};
 
 /// The largest width and height: with the guard band, edge functions over a tile then fit 32 bits.

@@ -24,6 +24,19 @@ pub struct Options {
 
 /// What becomes of a tile once its visible triangles are known. Runs inside the SIMD dispatch of its task.
 pub trait Resolve<T: Real>: Sync {
+    /// Whether triangles must lie behind what [`Resolve::before`] gives.
+    const BEHIND: bool = false;
+
+    /// Whether tile `index`, of `columns` to a row, is drawn at all.
+    #[inline(always)]
+    fn wants(&self, _index: usize, _columns: usize) -> bool {
+        true
+    }
+
+    /// The depth that pixels of one row of a tile must exceed, where `BEHIND`; less is nearer.
+    #[inline(always)]
+    fn before(&self, _x: usize, _y: usize, _depth: &mut [T]) {}
+
     fn resolve<S: Simd>(&self, s: S, tile: &Tile<T>, scene: &Scene<T>);
 }
 
@@ -71,6 +84,9 @@ pub fn draw<T: Real>(
     let scene = Scene { screen: &screen, grid: &grid, clip, snapped: &snapped, faces, bins: &bins };
     let idle: Mutex<Vec<Tile<T>>> = Mutex::new(Vec::new());
     parallel::run(watch, grid.tiles(), |index| {
+        if !resolve.wants(index, grid.columns) {
+            return;
+        }
         let taken = idle.lock().unwrap_or_else(PoisonError::into_inner).pop();
         let mut tile = taken.unwrap_or_else(|| Tile::new(samples));
         dispatch!(s => draw_tile(s, &mut tile, index, &scene, resolve));
@@ -79,14 +95,20 @@ pub fn draw<T: Real>(
 }
 
 #[inline(always)]
-fn draw_tile<S: Simd, T: Real>(
+fn draw_tile<S: Simd, T: Real, R: Resolve<T>>(
     s: S,
     tile: &mut Tile<T>,
     index: usize,
     scene: &Scene<T>,
-    resolve: &impl Resolve<T>,
+    resolve: &R,
 ) {
-    tile.draw(s, index, scene);
+    tile.clear(index, scene);
+    if R::BEHIND {
+        tile.keep_behind(|x, y, depth| resolve.before(x, y, depth));
+        tile.draw::<S, true>(s, index, scene);
+    } else {
+        tile.draw::<S, false>(s, index, scene);
+    }
     resolve.resolve(s, tile, scene);
 }
 

@@ -2,7 +2,7 @@
 
 use super::picture::Picture;
 use super::pipeline::{Options, Resolve, draw};
-use super::tile::{NONE, Scene, Tile};
+use super::tile::{NONE, Scene, TILE, TILE_BITS, Tile};
 use crate::parallel::{Interrupted, Watch};
 use crate::real::Real;
 use crate::simd::Simd;
@@ -38,6 +38,101 @@ pub fn rasterize_depth<T: Real>(
 ) -> Result<(), Interrupted> {
     let depth = Picture::new(depth, options.width * options.samples, options.height);
     draw(watch, clip, faces, options, &DepthOnly { depth })
+}
+
+/// [`rasterize_depth`] of what lies behind `first`, the picture that it gave: the second surface.
+pub fn rasterize_behind<T: Real>(
+    watch: &mut dyn Watch,
+    clip: &[[T; 4]],
+    faces: &[[i32; 3]],
+    options: &Options,
+    first: &[T],
+    depth: &mut [T],
+) -> Result<(), Interrupted> {
+    let options = Options { samples: 1, ..*options };
+    assert_eq!(first.len(), options.width * options.height, "a first picture of the same size");
+    let reversed = options.depth == super::Depth::Reversed;
+    let depth = DepthOnly { depth: Picture::new(depth, options.width, options.height) };
+    draw(watch, clip, faces, &options, &Behind { depth, first, width: options.width, reversed })
+}
+
+/// [`rasterize_depth`] into pages of 2^`bits` pixels square, at least a tile: `table` says for each page of the picture,
+/// row by row, which of `pages` it is, or -1 for one that is not drawn. The picture's sides are multiples of a page's.
+pub fn rasterize_pages<T: Real>(
+    watch: &mut dyn Watch,
+    clip: &[[T; 4]],
+    faces: &[[i32; 3]],
+    options: &Options,
+    (table, bits): (&[i32], u32),
+    pages: &mut [T],
+) -> Result<(), Interrupted> {
+    let options = Options { samples: 1, ..*options };
+    let side = 1 << bits;
+    assert!(bits >= TILE_BITS && options.width.is_multiple_of(side) && options.height.is_multiple_of(side));
+    let columns = options.width >> bits;
+    assert_eq!(table.len(), columns * (options.height >> bits), "a table of all pages");
+    let height = pages.len() >> bits;
+    assert!(table.iter().all(|&slot| slot < 0 || ((slot as usize + 1) << bits) <= height), "pages for all");
+    let pages = Picture::new(&mut pages[..height << bits], side, height);
+    draw(watch, clip, faces, &options, &Pages { pages, table, bits, columns })
+}
+
+struct Behind<'a, T> {
+    depth: DepthOnly<'a, T>,
+    first: &'a [T],
+    width: usize,
+    reversed: bool,
+}
+
+impl<T: Real> Resolve<T> for Behind<'_, T> {
+    const BEHIND: bool = true;
+
+    #[inline(always)]
+    fn before(&self, x: usize, y: usize, depth: &mut [T]) {
+        let row = &self.first[y * self.width + x..][..depth.len()];
+        for (to, &z) in depth.iter_mut().zip(row) {
+            // Nothing lies behind what is not there.
+            *to = if z < T::INFINITY && self.reversed { -z } else { z };
+        }
+    }
+
+    #[inline(always)]
+    fn resolve<S: Simd>(&self, s: S, tile: &Tile<T>, scene: &Scene<T>) {
+        self.depth.resolve(s, tile, scene);
+    }
+}
+
+struct Pages<'a, T> {
+    pages: Picture<'a, T>,
+    table: &'a [i32],
+    bits: u32,
+    columns: usize,
+}
+
+impl<T: Real> Pages<'_, T> {
+    fn slot(&self, x: usize, y: usize) -> i32 {
+        self.table[(y >> self.bits) * self.columns + (x >> self.bits)]
+    }
+}
+
+impl<T: Real> Resolve<T> for Pages<'_, T> {
+    fn wants(&self, index: usize, columns: usize) -> bool {
+        self.slot(index % columns * TILE, index / columns * TILE) >= 0
+    }
+
+    #[inline(always)]
+    fn resolve<S: Simd>(&self, _: S, tile: &Tile<T>, scene: &Scene<T>) {
+        let sign = if scene.screen.reversed { -T::one() } else { T::one() };
+        let (slot, mask) = (self.slot(tile.x, tile.y) as usize, (1 << self.bits) - 1);
+        for y in 0..tile.height {
+            let row = (slot << self.bits) + ((tile.y + y) & mask);
+            // Sound: no other tile has these pixels, and no two pages one slot (the face gives each its own).
+            let out = unsafe { self.pages.row(tile.x & mask, row, tile.width) };
+            for (to, &z) in out.iter_mut().zip(tile.depths(0, y)) {
+                *to = if z < T::INFINITY { sign * z } else { T::INFINITY };
+            }
+        }
+    }
 }
 
 pub(crate) struct DepthOnly<'a, T> {

@@ -35,6 +35,8 @@ pub struct Tile<T> {
     samples: &'static [[i32; 2]],
     /// By sample, row and column; less is nearer.
     depth: Vec<T>,
+    /// What depths must exceed, of the first sample alone; empty unless asked for.
+    before: Vec<T>,
     /// Indices into `visible`.
     ids: Vec<u32>,
     /// Every triangle that covers a sample.
@@ -61,6 +63,7 @@ impl<T: Real> Tile<T> {
             height: 0,
             samples,
             depth: vec![T::INFINITY; n],
+            before: Vec::new(),
             ids: vec![NONE; n],
             visible: Vec::new(),
         }
@@ -100,7 +103,7 @@ impl<T: Real> Tile<T> {
     }
 
     /// Starts an empty tile.
-    fn clear(&mut self, index: usize, scene: &Scene<T>) {
+    pub fn clear(&mut self, index: usize, scene: &Scene<T>) {
         (self.x, self.y) = (index % scene.grid.columns * TILE, index / scene.grid.columns * TILE);
         self.width = TILE.min(scene.screen.width - self.x);
         self.height = TILE.min(scene.screen.height - self.y);
@@ -109,16 +112,25 @@ impl<T: Real> Tile<T> {
         self.visible.clear();
     }
 
-    /// Draws all triangles of tile `index`.
+    /// Only what exceeds the depths that `before(x, y, row)` fills in is drawn: one sample a pixel.
     #[inline(always)]
-    pub fn draw<S: Simd>(&mut self, s: S, index: usize, scene: &Scene<T>) {
-        self.clear(index, scene);
+    pub fn keep_behind(&mut self, before: impl Fn(usize, usize, &mut [T])) {
+        self.before.clear();
+        self.before.resize(TILE * PITCH, -T::INFINITY);
+        for y in 0..self.height {
+            before(self.x, self.y + y, &mut self.before[y * PITCH..][..self.width]);
+        }
+    }
+
+    /// Draws all triangles of tile `index`, which was cleared.
+    #[inline(always)]
+    pub fn draw<S: Simd, const BEHIND: bool>(&mut self, s: S, index: usize, scene: &Scene<T>) {
         let mut batch = Batch { triangles: [Small::default(); LANES], len: 0 };
         for bins in scene.bins {
             for &entry in bins.entries(index) {
                 if entry & PIECE != 0 {
-                    self.draw_batch(s, scene, &mut batch);
-                    self.draw_piece(s, scene, &bins.pieces[(entry & !PIECE) as usize]);
+                    self.draw_batch::<S, BEHIND>(s, scene, &mut batch);
+                    self.draw_piece::<S, BEHIND>(s, scene, &bins.pieces[(entry & !PIECE) as usize]);
                     continue;
                 }
                 let [i, j, k] = scene.faces[entry as usize];
@@ -132,23 +144,23 @@ impl<T: Real> Tile<T> {
                         batch.triangles[batch.len] = Small { face: entry, rows, x, y };
                         batch.len += 1;
                         if batch.len == LANES {
-                            self.draw_batch(s, scene, &mut batch);
+                            self.draw_batch::<S, BEHIND>(s, scene, &mut batch);
                         }
                     }
                 } else {
-                    self.draw_batch(s, scene, &mut batch);
-                    self.draw_region(s, &region, || scene.planes(entry));
+                    self.draw_batch::<S, BEHIND>(s, scene, &mut batch);
+                    self.draw_region::<S, BEHIND>(s, &region, || scene.planes(entry));
                 }
             }
         }
-        self.draw_batch(s, scene, &mut batch);
+        self.draw_batch::<S, BEHIND>(s, scene, &mut batch);
     }
 
     /// Cut triangles are few and may be huge: their planes are worth double precision.
     #[inline(always)]
-    fn draw_piece<S: Simd>(&mut self, s: S, scene: &Scene<T>, piece: &Piece) {
+    fn draw_piece<S: Simd, const BEHIND: bool>(&mut self, s: S, scene: &Scene<T>, piece: &Piece) {
         if let Some(region) = self.region(scene, &piece.vertices) {
-            self.draw_region(s, &region, || {
+            self.draw_region::<S, BEHIND>(s, &region, || {
                 let clip = scene.faces[piece.face as usize].map(|k| scene.clip[k as usize]);
                 let clip = clip.map(|v| v.map(|c| c.to_f64()));
                 planes(piece.face as i32, clip, piece.reference, scene.screen).to()
@@ -158,7 +170,7 @@ impl<T: Real> Tile<T> {
 
     /// The planes of up to eight small triangles at once, then their depth tests one by one.
     #[inline(always)]
-    fn draw_batch<S: Simd>(&mut self, s: S, scene: &Scene<T>, batch: &mut Batch) {
+    fn draw_batch<S: Simd, const BEHIND: bool>(&mut self, s: S, scene: &Scene<T>, batch: &mut Batch) {
         if batch.len == 0 {
             return;
         }
@@ -208,7 +220,7 @@ impl<T: Real> Tile<T> {
             let p = self.visible[first + l];
             while rows != 0 {
                 if rows & 0xff != 0 {
-                    self.test(s, (first + l) as u32, &p, rows & 0xff, 0, t.x as usize, y);
+                    self.test::<S, BEHIND>(s, (first + l) as u32, &p, rows & 0xff, 0, t.x as usize, y);
                 }
                 rows >>= LANES;
                 y += 1;
@@ -245,7 +257,12 @@ impl<T: Real> Tile<T> {
 
     /// Draws a triangle of any size; `planes` is asked for once a sample is covered.
     #[inline(always)]
-    fn draw_region<S: Simd>(&mut self, s: S, region: &Region, planes: impl Fn() -> Planes<T>) {
+    fn draw_region<S: Simd, const BEHIND: bool>(
+        &mut self,
+        s: S,
+        region: &Region,
+        planes: impl Fn() -> Planes<T>,
+    ) {
         let Region { ref edges, x: [x0, x1], y: [y0, y1], .. } = *region;
         let id = self.visible.len() as u32;
         for sample in 0..self.samples.len() {
@@ -259,7 +276,7 @@ impl<T: Real> Tile<T> {
                             self.visible.push(planes());
                         }
                         let p = self.visible[id as usize];
-                        self.test(s, id, &p, bits, sample, x as usize, y as usize);
+                        self.test::<S, BEHIND>(s, id, &p, bits, sample, x as usize, y as usize);
                     }
                     x += LANES as i32;
                 }
@@ -269,7 +286,16 @@ impl<T: Real> Tile<T> {
 
     /// Depth test of eight pixels of triangle `id`, of which those in `bits` are covered.
     #[inline(always)]
-    fn test<S: Simd>(&mut self, s: S, id: u32, p: &Planes<T>, bits: u64, sample: usize, x: usize, y: usize) {
+    fn test<S: Simd, const BEHIND: bool>(
+        &mut self,
+        s: S,
+        id: u32,
+        p: &Planes<T>,
+        bits: u64,
+        sample: usize,
+        x: usize,
+        y: usize,
+    ) {
         let [ox, oy] = self.offset(sample);
         // Pixels and offsets are small multiples of 1/16: these differences are exact.
         let dx = T::of((self.x + x) as i32 as f64) + ox - p.reference[0];
@@ -281,7 +307,10 @@ impl<T: Real> Tile<T> {
         let z = z * p.depth[0] + (p.depth[2] + p.depth[1] * dy);
         let z = Lanes::max(z, T::V8::splat(s, p.depth_range[0]));
         let z = Lanes::min(z, T::V8::splat(s, p.depth_range[1]));
-        let bits = z.simd_lt(old).to_bitmask() & bits;
+        let mut bits = z.simd_lt(old).to_bitmask() & bits;
+        if BEHIND {
+            bits &= z.simd_gt(T::V8::from_slice(s, &self.before[at..at + LANES])).to_bitmask();
+        }
         if bits == 0 {
             return;
         }

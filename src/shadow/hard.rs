@@ -20,19 +20,23 @@ pub fn hard<T: Real, const PERSPECTIVE: bool>(
         watch,
         (receivers, normals, out),
         1 << 14,
-        |_, (p, n, out)| dispatch!(_s => body::<T, PERSPECTIVE>(map, p, n, bias, out)),
+        |first, (p, n, out)| dispatch!(_s => body::<T, PERSPECTIVE>(map, first, p, n, bias, out)),
     )
 }
 
 #[inline(always)]
 fn body<T: Real, const PERSPECTIVE: bool>(
     map: &Map<'_, T>,
+    first: usize,
     points: &[[T; 3]],
     normals: Option<&[[T; 3]]>,
     bias: &Bias<T>,
     out: &mut [T],
 ) {
     for i in 0..out.len() {
+        if map.skips(first + i) {
+            continue;
+        }
         out[i] = match map.anchor::<PERSPECTIVE>(points[i], at(normals, i), bias) {
             Ok(a) if map.blocker_here::<PERSPECTIVE>(&a).is_some() => T::zero(),
             Ok(_) => T::one(),

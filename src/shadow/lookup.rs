@@ -10,6 +10,7 @@
 //! 1987; normal offset: D. Holbert, *Saying "Goodbye" to Shadow Acne*, GDC 2011.
 
 use crate::real::{Lanes, Real};
+use crate::shadow::texels::Texels;
 use crate::simd::*;
 use crate::vec::Vec3;
 
@@ -20,7 +21,7 @@ pub const BLOCK: usize = 8;
 #[derive(Clone, Copy)]
 pub struct Map<'a, T> {
     /// Depth along the axis at texel centres; infinite where nothing was hit.
-    depth: &'a [T],
+    depth: Texels<'a, T>,
     width: usize,
     height: usize,
     origin: Vec3<T>,
@@ -34,12 +35,14 @@ pub struct Map<'a, T> {
     texel: [T; 2],
     /// The least depth of anything that casts a shadow.
     pub near: T,
+    /// Which map each receiver looks into, and which one this is; of several maps that share the work.
+    chosen: Option<(&'a [u8], u8)>,
 }
 
 impl<'a, T: Real> Map<'a, T> {
     /// `window` is left, right, bottom, top. `None` unless the depths fill the size and the window has an extent.
     pub fn new(
-        depth: &'a [T],
+        depth: Texels<'a, T>,
         [width, height]: [usize; 2],
         origin: [T; 3],
         frame: [[T; 3]; 3],
@@ -47,11 +50,11 @@ impl<'a, T: Real> Map<'a, T> {
         near: T,
     ) -> Option<Self> {
         let [left, right, bottom, top] = window;
-        let fits = width > 0 && height > 0 && width.checked_mul(height) == Some(depth.len());
+        let fits = width > 0 && height > 0 && depth.fill([width, height]);
         // Texel coordinates are exact in single precision up to there, and indices have 32 bits.
         if !fits
             || width.max(height) > 1 << 22
-            || depth.len() > u32::MAX as usize
+            || width * height > u32::MAX as usize
             || !(right > left && top > bottom)
         {
             return None;
@@ -69,7 +72,22 @@ impl<'a, T: Real> Map<'a, T> {
             scale,
             texel,
             near,
+            chosen: None,
         })
+    }
+
+    /// The same map for those receivers alone whose entry in `chosen` is `own`.
+    pub fn only(self, chosen: &'a [u8], own: u8) -> Self {
+        Map { chosen: Some((chosen, own)), ..self }
+    }
+
+    /// Whether receiver `i` looks into another map. Those beyond the list are looked up.
+    #[inline(always)]
+    pub fn skips(&self, i: usize) -> bool {
+        match self.chosen {
+            Some((chosen, own)) => i < chosen.len() && chosen[i] != own,
+            None => false,
+        }
     }
 
     /// Whether a place in texels lies on the map.
@@ -77,6 +95,24 @@ impl<'a, T: Real> Map<'a, T> {
     pub fn holds(&self, x: T, y: T) -> bool {
         let zero = T::zero();
         x >= zero && y >= zero && x < T::of(self.width as f64) && y < T::of(self.height as f64)
+    }
+
+    /// Whether the texel at a place on the map is stored at all.
+    #[inline(always)]
+    pub fn resident(&self, x: T, y: T) -> bool {
+        self.depth.stored(x.floor().to_f64() as u32, y.floor().to_f64() as u32)
+    }
+
+    /// The larger side of a texel in units of the window.
+    #[inline(always)]
+    pub fn larger_texel(&self) -> T {
+        self.texel[0].max(self.texel[1])
+    }
+
+    /// Width and height in texels.
+    #[inline(always)]
+    pub fn size(&self) -> [usize; 2] {
+        [self.width, self.height]
     }
 
     /// The larger side of the map in texels.
@@ -283,12 +319,8 @@ impl<T: Real> Map<'_, T> {
         let cy = Lanes::min(Lanes::max(fy, zero), last_y);
         let inside = cx.simd_eq(fx) & cy.simd_eq(fy);
         let (ix, iy) = (T::indices::<S>(cx), T::indices::<S>(cy));
-        let mut depth = [T::zero(); BLOCK];
-        for k in 0..BLOCK {
-            let at = iy[k].wrapping_mul(self.width as u32).wrapping_add(ix[k]) as usize;
-            // SAFETY: both coordinates were clamped to the map, whose size `new` checked.
-            depth[k] = unsafe { *self.depth.get_unchecked(at) };
-        }
+        // SAFETY: both coordinates were clamped to the map, whose size `new` checked.
+        let depth = unsafe { self.depth.block(self.width, &ix, &iy) };
         let depth =
             inside.select(<T::V8<S> as SimdBase<S>>::load_array(s, depth), all::<T, S>(s, T::INFINITY));
         let blocked =
@@ -305,7 +337,7 @@ impl<T: Real> Map<'_, T> {
             return None;
         }
         let plane = a.base + a.gx * fx + a.gy * fy;
-        let depth = self.depth[fy.to_f64() as usize * self.width + fx.to_f64() as usize];
+        let depth = self.depth.at(self.width, fx.to_f64() as usize, fy.to_f64() as usize);
         let blocks =
             if PERSPECTIVE { depth * plane.max(a.key * T::of(1e-3)) < a.limit } else { depth < plane };
         if blocks { Some(depth) } else { None }

@@ -1,6 +1,7 @@
 //! Shadow maps and their filters, and shadows by rays. Every lookup returns the lit fraction of the light, in [0, 1].
 //!
 //! - [`shadow_map`](mod@shadow_map): depth as the light sees it
+//! - [`cascades`](mod@cascades): several maps that share the work, of a view's depths or of a cube's faces
 //! - [`hard`]: one comparison
 //! - [`pcf`]: percentage-closer filtering over a fixed width
 //! - [`pcss`]: percentage-closer soft shadows, whose width follows from the blockers
@@ -10,9 +11,10 @@
 //! - [`ray_traced`](mod@ray_traced): rays to the light
 //!
 //! The parts: `lookup` (the map, the bias, and the taps that all filters share), `pattern` (where the taps of a filter
-//! lie), `filtered` (means of moments over a part of a map), `tested` (the bounds, and lookups by any of them), `fit`
-//! (what a map's window must hold).
+//! lie), `texels` (what depths are stored as), `filtered` (means of moments over a part of a map), `tested` (the bounds,
+//! and lookups by any of them), `fit` (what a map's window must hold).
 
+pub mod cascades;
 pub mod distance_field;
 pub mod exponential_variance;
 pub(crate) mod filtered;
@@ -28,7 +30,10 @@ pub mod pcf;
 pub mod pcss;
 pub mod ray_traced;
 pub mod shadow_map;
+pub(crate) mod texels;
 #[cfg_attr(not(feature = "python"), allow(dead_code))] // as `fit`
 pub(crate) mod tested;
 pub mod variance;
 pub mod variance_soft;
+#[cfg_attr(not(feature = "python"), allow(dead_code))] // as `fit`
+pub mod virtual_map;

@@ -52,6 +52,9 @@ fn body<T: Real, S: Simd, const PERSPECTIVE: bool>(
     out: &mut [T],
 ) {
     for i in 0..out.len() {
+        if map.skips(first + i) {
+            continue;
+        }
         let a = match map.anchor::<PERSPECTIVE>(points[i], at(normals, i), bias) {
             Ok(a) => a,
             Err(answer) => {

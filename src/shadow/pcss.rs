@@ -74,6 +74,9 @@ fn body<T: Real, S: Simd, const PERSPECTIVE: bool>(
     mut more: Option<Intermediates<'_, T>>,
 ) {
     for i in 0..out.len() {
+        if map.skips(first + i) {
+            continue;
+        }
         let found = match map.anchor::<PERSPECTIVE>(points[i], at(normals, i), &knobs.bias) {
             Ok(a) => receiver::<T, S, PERSPECTIVE>(s, map, &a, knobs, (first + i) as u64),
             Err(answer) if answer.is_nan() => {

@@ -3,12 +3,14 @@
 //! Triangles go through the rasteriser with reversed depth: near / depth under perspective, whose rounding is
 //! relative to the depth itself at any distance, so that the linear depth has the full precision of the format.
 //!
-//! L. Williams, *Casting Curved Shadows on Curved Surfaces*, 1978.
+//! L. Williams, *Casting Curved Shadows on Curved Surfaces*, 1978. Y. Wang, S. Molnar, *Second-Depth Shadow Mapping*,
+//! 1994. A. Woo, *The Shadow Depth Map Revisited*, Graphics Gems III, 1992 (midpoint).
 
 use crate::dispatch;
 use crate::parallel::{self, Interrupted, Watch};
 use crate::raster::{self, Cull, Options};
 use crate::real::Real;
+use crate::shadow::texels::Steps;
 
 /// The light's view: see `lookup` for the frame and the window.
 #[derive(Clone, Copy)]
@@ -24,6 +26,16 @@ pub struct View {
     pub perspective: bool,
 }
 
+/// Which of the surfaces that a light's ray passes is kept.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Surface {
+    First,
+    /// The next behind it (Wang & Molnar 1994).
+    Second,
+    /// Half way between the two (Woo 1992).
+    Midpoint,
+}
+
 /// Depth at every texel centre of `width` × `height`, infinite where there is nothing. Indices must lie below
 /// `positions.len()`.
 pub fn shadow_map<T: Real>(
@@ -33,8 +45,67 @@ pub fn shadow_map<T: Real>(
     view: &View,
     [width, height]: [usize; 2],
     cull: Cull,
+    surface: Surface,
     depth: &mut [T],
 ) -> Result<(), Interrupted> {
+    let clip = projected(watch, positions, view)?;
+    let options = Options { width, height, samples: 1, cull, depth: raster::Depth::Reversed };
+    raster::rasterize_depth(watch, &clip, faces, &options, depth)?;
+    if surface == Surface::First {
+        return linear(watch, view, depth);
+    }
+    let mut second = vec![T::INFINITY; depth.len()];
+    raster::rasterize_behind(watch, &clip, faces, &options, depth, &mut second)?;
+    if surface == Surface::Second {
+        depth.copy_from_slice(&second);
+        return linear(watch, view, depth);
+    }
+    linear(watch, view, depth)?;
+    linear(watch, view, &mut second)?;
+    let half = T::of(0.5);
+    parallel::for_each(watch, (depth, &second[..]), 1 << 16, |_, (z, behind)| {
+        dispatch!(_s => for i in 0..z.len() {
+            z[i] = if behind[i] < T::INFINITY { (z[i] + behind[i]) * half } else { T::INFINITY };
+        })
+    })
+}
+
+/// [`shadow_map`] of those pages of 2^`bits` texels square that `table` gives a place in `pages`.
+pub fn shadow_pages<T: Real>(
+    watch: &mut dyn Watch,
+    positions: &[[T; 3]],
+    faces: &[[i32; 3]],
+    view: &View,
+    [width, height]: [usize; 2],
+    table: (&[i32], u32),
+    pages: &mut [T],
+) -> Result<(), Interrupted> {
+    let clip = projected(watch, positions, view)?;
+    let options = Options { width, height, samples: 1, cull: Cull::None, depth: raster::Depth::Reversed };
+    raster::rasterize_pages(watch, &clip, faces, &options, table, pages)?;
+    linear(watch, view, pages)
+}
+
+/// Depths in equal steps: 16 bits, or 24 and 32 in 32.
+pub fn quantize<T: Real, Q: Copy + Send>(
+    watch: &mut dyn Watch,
+    depth: &[T],
+    steps: &Steps,
+    of: impl Fn(u32) -> Q + Sync,
+    out: &mut [Q],
+) -> Result<(), Interrupted> {
+    parallel::for_each(watch, (depth, out), 1 << 16, |_, (depth, out)| {
+        for (z, out) in depth.iter().zip(out) {
+            *out = of(steps.stored(*z));
+        }
+    })
+}
+
+fn projected<T: Real>(
+    watch: &mut dyn Watch,
+    positions: &[[T; 3]],
+    view: &View,
+) -> Result<Vec<[T; 4]>, Interrupted> {
     let mut clip = vec![[T::zero(); 4]; positions.len()];
     parallel::for_each(
         watch,
@@ -42,8 +113,10 @@ pub fn shadow_map<T: Real>(
         1 << 14,
         |_, (p, clip)| dispatch!(_s => project(view, p, clip)),
     )?;
-    let options = Options { width, height, samples: 1, cull, depth: raster::Depth::Reversed };
-    raster::rasterize_depth(watch, &clip, faces, &options, depth)?;
+    Ok(clip)
+}
+
+fn linear<T: Real>(watch: &mut dyn Watch, view: &View, depth: &mut [T]) -> Result<(), Interrupted> {
     parallel::for_each(watch, depth, 1 << 16, |_, z| dispatch!(_s => linearise(view, z)))
 }
 

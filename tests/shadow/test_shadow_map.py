@@ -126,6 +126,14 @@ def test_errors_name_the_argument(scenes):
         sl.shadow.shadow_map(p, f, light, 0)
     with pytest.raises(TypeError, match="light: expected a light that a map can look from"):
         sl.shadow.shadow_map(p, f, 3)
+    with pytest.raises(ValueError, match="resolution: expected a number or"):
+        sl.shadow.shadow_map(p, f, light, (1, 2, 3))
+    with pytest.raises(ValueError, match="surface"):
+        sl.shadow.shadow_map(p, f, light, surface="back")
+    with pytest.raises(ValueError, match="bits: expected None, 16, 24 or 32"):
+        sl.shadow.shadow_map(p, f, light, bits=8)
+    with pytest.raises(TypeError, match="snap"):
+        sl.shadow.shadow_map(p, f, light, snap="yes")
     with pytest.raises(ValueError, match="cull"):
         sl.shadow.shadow_map(p, f, light, cull="both")
     with pytest.raises(ValueError, match="window: expected left < right"):
@@ -147,7 +155,9 @@ def test_what_is_not_finite(scenes, kind):
         some = sl.shadow.shadow_map(p, f, light, 8, receivers=[[bad, 0, 0], [0.1, 0, 0.1], [0.5, -1, 0.4]])
         alone = sl.shadow.shadow_map(p, f, light, 8, receivers=[[0.1, 0, 0.1], [0.5, -1, 0.4]])
         assert np.array_equal(some.depth, alone.depth)
-        none = sl.shadow.shadow_map(p, f, light, 8, receivers=[[bad, 0, 0]])
+        with pytest.raises(ValueError, match="receivers: expected a finite point, got none among 1"):
+            sl.shadow.shadow_map(p, f, light, 8, receivers=[[bad, 0, 0]])
+        none = sl.shadow.shadow_map(p, f, light, 8, receivers=np.zeros((0, 3)))
         assert np.array_equal(none.depth, sl.shadow.shadow_map(p, f, light, 8).depth)
 
 

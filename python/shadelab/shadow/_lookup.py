@@ -3,12 +3,15 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Callable, Sequence
 from typing import Any, Literal, TypeAlias
 
-from numpy.typing import ArrayLike
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
 
 from .. import _arrays
 from .._arrays import Floats
+from ._sets import MapSet
 from .maps import ShadowMap
 
 Kernel: TypeAlias = Literal["vogel", "box", "grid", "tent", "poisson"]
@@ -16,29 +19,28 @@ _KERNELS = ("vogel", "box", "grid", "tent", "poisson")
 _MAX_SAMPLES = 4096
 
 
+def _maps(value: Any) -> ShadowMap | MapSet:
+    if not isinstance(value, ShadowMap | MapSet):
+        raise TypeError(f"shadow_map: expected a ShadowMap or a set of them, got {type(value).__name__}")
+    return value
+
+
 def _granted(
-    shadow_map: ShadowMap,
-    normals: ArrayLike | None,
-    bias: float,
-    slope_bias: float,
-    normal_offset: float,
-    receiver_plane: bool,
+    normals: ArrayLike | None, bias: float, slope_bias: float, normal_offset: float, receiver_plane: bool
 ) -> tuple[float, float, float, bool]:
-    if not isinstance(shadow_map, ShadowMap):
-        raise TypeError(f"shadow_map: expected a ShadowMap, got {type(shadow_map).__name__}")
     return (
         _arrays.number("bias", bias),
         _arrays.number("slope_bias", slope_bias, 0.0),
         _arrays.number("normal_offset", normal_offset, 0.0),
-        bool(receiver_plane) and normals is not None,
+        _arrays.flag("receiver_plane", receiver_plane) and normals is not None,
     )
 
 
 def _receivers(
-    shadow_map: ShadowMap, receivers: ArrayLike, normals: ArrayLike | None
+    shadow_map: ShadowMap | MapSet, receivers: ArrayLike, normals: ArrayLike | None
 ) -> tuple[tuple[int, ...], Floats, Floats | None]:
     """The batch's shape, points and normals as (n, 3) in the map's precision."""
-    return _points(shadow_map.depth.dtype, receivers, normals)
+    return _points(shadow_map.dtype, receivers, normals)
 
 
 def _points(
@@ -50,6 +52,53 @@ def _points(
         named["normals"] = (_arrays.vectors("normals", normals, 3, dtype), 1)
     shape, flat = _arrays.broadcast(named)
     return shape, flat[0], flat[1] if normals is not None else None
+
+
+Look: TypeAlias = "Callable[[Any, tuple[Any, ...], Any, Sequence[Floats]], None]"
+
+
+def _looked_up(
+    maps: ShadowMap | MapSet,
+    points: Floats,
+    normals: Floats | None,
+    granted: tuple[float, float, float, bool],
+    results: Sequence[Floats],
+    blanks: Sequence[float],
+    look: Look,
+) -> tuple[NDArray[np.uint8], Floats | None] | None:
+    """Calls ``look(map, chart, granted, results)`` for each map; the first of `results` is the lit fraction.
+
+    `blanks` are what receivers get that no map holds. Returns which map each receiver looked into, and the share of the
+    one after it; None for a single map.
+    """
+
+    def one(m: Any, chosen: Any, to: Sequence[Floats]) -> None:
+        # Half a step of what is stored is granted always.
+        look(m, m._chart(chosen), (granted[0] + 0.5 * m.step, *granted[1:]), to)
+
+    if isinstance(maps, ShadowMap):
+        one(maps, None, results)
+        return None
+    first, after, share = maps._chosen(points)
+    for result, blank in zip(results, blanks, strict=True):
+        result.fill(blank)
+    found = np.bincount(first, minlength=256)
+    for i, m in enumerate(maps.maps):
+        if found[i]:
+            one(m, (first, i), results)
+    if found[255]:
+        lost = points if normals is None else points + normals
+        for result in results:
+            result[(first == 255) & np.isnan(lost).any(-1)] = np.nan
+    if after is None or share is None:
+        return first, None
+    both = np.flatnonzero(after != 255)
+    if len(both):
+        other = np.ones_like(results[0])
+        for i in np.unique(after[both]):
+            one(maps.maps[i], (after, int(i)), [other])
+        results[0][both] += share[both] * (other[both] - results[0][both])
+    return first, share
 
 
 def _result(out: Floats | None, shape: tuple[int, ...], dtype: Any) -> tuple[Floats, Floats]:

@@ -2,21 +2,68 @@
 
 from __future__ import annotations
 
-from typing import Literal
+from typing import Any, Literal, NamedTuple, overload
 
-from numpy.typing import ArrayLike
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
 
 from .. import _arrays
 from .._arrays import Floats
 from .._kernels import shadow as _kernels
-from ._lookup import Kernel, _granted, _receivers, _result, _taps
+from ._lookup import Kernel, _granted, _looked_up, _maps, _receivers, _result, _taps
+from ._sets import MapSet
 from .maps import ShadowMap
 
-__all__ = ["hard", "pcf"]
+__all__ = ["Compared", "hard", "pcf"]
 
 
+class Compared(NamedTuple):
+    """What comparisons found, and where; arrays of the batch's shape."""
+
+    lit: Floats
+    """The lit fraction."""
+    map_index: NDArray[np.intp]
+    """The map that was looked into: the cascade, the face of a cube, the level; -1 where there is none."""
+    share: Floats
+    """How much the next map has counted, where two cross over; else 0."""
+
+
+def _compared(result: Floats, found: tuple[NDArray[np.uint8], Floats | None] | None, wanted: bool) -> Floats | Compared:
+    if not wanted:
+        return result
+    index, share = (np.zeros(result.shape, np.intp), None) if found is None else found
+    named = np.where(index == 255, -1, index.astype(np.intp)).reshape(result.shape)
+    return Compared(result, named, np.zeros_like(result) if share is None else share.reshape(result.shape))
+
+
+@overload
 def hard(
-    shadow_map: ShadowMap,
+    shadow_map: ShadowMap | MapSet,
+    receivers: ArrayLike,
+    normals: ArrayLike | None = ...,
+    *,
+    bias: float = ...,
+    slope_bias: float = ...,
+    normal_offset: float = ...,
+    receiver_plane: bool = ...,
+    full_output: Literal[False] = ...,
+    out: Floats | None = ...,
+) -> Floats: ...
+@overload
+def hard(
+    shadow_map: ShadowMap | MapSet,
+    receivers: ArrayLike,
+    normals: ArrayLike | None = ...,
+    *,
+    bias: float = ...,
+    slope_bias: float = ...,
+    normal_offset: float = ...,
+    receiver_plane: bool = ...,
+    full_output: Literal[True],
+    out: Floats | None = ...,
+) -> Compared: ...
+def hard(
+    shadow_map: ShadowMap | MapSet,
     receivers: ArrayLike,
     normals: ArrayLike | None = None,
     *,
@@ -24,13 +71,14 @@ def hard(
     slope_bias: float = 0.05,
     normal_offset: float = 0.0,
     receiver_plane: bool = True,
+    full_output: bool = False,
     out: Floats | None = None,
-) -> Floats:
+) -> Floats | Compared:
     """Hard shadows: 1 where the light's centre is seen, 0 elsewhere, by one texel.
 
     Parameters
     ----------
-    shadow_map : ShadowMap
+    shadow_map : ShadowMap, Cascades, CubeShadowMap or VirtualShadowMap
         The depth that the light sees; its precision governs.
     receivers : array_like, shape (..., 3)
         Points in the world.
@@ -44,13 +92,16 @@ def hard(
         Texels that receivers are moved by along their normal, times the sine of the light's angle to it. Needs normals.
     receiver_plane : bool
         Compare with the receiver's tangent plane at the texel's centre rather than with its own depth. Needs normals.
+    full_output : bool
+        Also return which of several maps was looked into.
     out : ndarray, shape (...), optional
         The array to write into.
 
     Returns
     -------
-    ndarray, shape (...)
-        The lit fraction, 0 or 1; 1 outside of the map and behind the light; NaN where a receiver or normal is NaN.
+    ndarray, shape (...), or Compared
+        The lit fraction, 0 or 1 (between them where cascades cross over); 1 outside of the map and behind the light;
+        NaN where a receiver or normal is NaN.
 
     Raises
     ------
@@ -78,16 +129,58 @@ def hard(
     >>> hard(above, [[-1.0, 0, 0], [1, 0, 0]], [0, 1, 0])
     array([0., 1.])
     """
-    granted = _granted(shadow_map, normals, bias, slope_bias, normal_offset, receiver_plane)
-    shape, points, n = _receivers(shadow_map, receivers, normals)
+    maps = _maps(shadow_map)
+    granted = _granted(normals, bias, slope_bias, normal_offset, receiver_plane)
+    wanted = _arrays.flag("full_output", full_output)
+    shape, points, n = _receivers(maps, receivers, normals)
     result, flat = _result(out, shape, points.dtype)
-    perspective = shadow_map.projection == "perspective"
-    _kernels.hard(shadow_map.depth, shadow_map._geometry(), perspective, points, n, granted, flat)
-    return result
+
+    def look(_: Any, chart: tuple[Any, ...], granted: Any, to: Any) -> None:
+        _kernels.hard(chart, points, n, granted, to[0])
+
+    return _compared(result, _looked_up(maps, points, n, granted, [flat], [1.0], look), wanted)
 
 
+@overload
 def pcf(
-    shadow_map: ShadowMap,
+    shadow_map: ShadowMap | MapSet,
+    receivers: ArrayLike,
+    normals: ArrayLike | None = ...,
+    *,
+    samples: int = ...,
+    radius: float = ...,
+    units: Literal["texels", "world"] = ...,
+    kernel: Kernel = ...,
+    bilinear: bool = ...,
+    seed: int | None = ...,
+    bias: float = ...,
+    slope_bias: float = ...,
+    normal_offset: float = ...,
+    receiver_plane: bool = ...,
+    full_output: Literal[False] = ...,
+    out: Floats | None = ...,
+) -> Floats: ...
+@overload
+def pcf(
+    shadow_map: ShadowMap | MapSet,
+    receivers: ArrayLike,
+    normals: ArrayLike | None = ...,
+    *,
+    samples: int = ...,
+    radius: float = ...,
+    units: Literal["texels", "world"] = ...,
+    kernel: Kernel = ...,
+    bilinear: bool = ...,
+    seed: int | None = ...,
+    bias: float = ...,
+    slope_bias: float = ...,
+    normal_offset: float = ...,
+    receiver_plane: bool = ...,
+    full_output: Literal[True],
+    out: Floats | None = ...,
+) -> Compared: ...
+def pcf(
+    shadow_map: ShadowMap | MapSet,
     receivers: ArrayLike,
     normals: ArrayLike | None = None,
     *,
@@ -101,8 +194,9 @@ def pcf(
     slope_bias: float = 0.05,
     normal_offset: float = 0.0,
     receiver_plane: bool = True,
+    full_output: bool = False,
     out: Floats | None = None,
-) -> Floats:
+) -> Floats | Compared:
     """Percentage-closer filtering: the share of texels around a receiver that do not block it.
 
     Parameters
@@ -124,18 +218,19 @@ def pcf(
     seed : int or None
         Each receiver turns the disk, or shifts the square's points, by random amounts that follow from the seed and its
         place in the batch: noise instead of banding. None gives all receivers the same points.
-    bias, slope_bias, normal_offset, receiver_plane, out
+    bias, slope_bias, normal_offset, receiver_plane, full_output, out
         As in `hard`.
 
     Returns
     -------
-    ndarray, shape (...)
+    ndarray, shape (...), or Compared
         The lit fraction, a multiple of 1 / `samples` unless `bilinear`; NaN where a receiver or normal is NaN.
 
     Raises
     ------
     TypeError, ValueError
-        If an argument has the wrong type, shape or range.
+        If an argument has the wrong type, shape or range, or the filter reaches beyond the border of one of several
+        maps.
 
     Notes
     -----
@@ -159,14 +254,22 @@ def pcf(
     >>> pcf(above, [[-1.0, 0, 0], [0, 0, 0], [1, 0, 0]], [0, 1, 0], radius=4, kernel="box", seed=None)
     array([0. , 0.5, 1. ])
     """
-    granted = _granted(shadow_map, normals, bias, slope_bias, normal_offset, receiver_plane)
+    maps = _maps(shadow_map)
+    granted = _granted(normals, bias, slope_bias, normal_offset, receiver_plane)
     taps = _taps("samples", kernel, samples, seed)
     half = _arrays.number("radius", radius, 0.0)
     smooth = _arrays.flag("bilinear", bilinear)
+    wanted = _arrays.flag("full_output", full_output)
     texels = _arrays.choice("units", units, ("texels", "world")) == "texels"
-    shape, points, n = _receivers(shadow_map, receivers, normals)
+    if isinstance(maps, MapSet):
+        if texels:
+            maps._wide(half)
+        elif maps.projection == "orthographic":
+            maps._wide(max(half / m.texel_size() for m in maps.maps))
+    shape, points, n = _receivers(maps, receivers, normals)
     result, flat = _result(out, shape, points.dtype)
-    perspective = shadow_map.projection == "perspective"
-    geometry = shadow_map._geometry()
-    _kernels.pcf(shadow_map.depth, geometry, perspective, points, n, taps, (half, texels, smooth), granted, flat)
-    return result
+
+    def look(_: Any, chart: tuple[Any, ...], granted: Any, to: Any) -> None:
+        _kernels.pcf(chart, points, n, taps, (half, texels, smooth), granted, to[0])
+
+    return _compared(result, _looked_up(maps, points, n, granted, [flat], [1.0], look), wanted)

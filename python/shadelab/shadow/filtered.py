@@ -82,7 +82,8 @@ def _lookup(
     shadow_map = m.shadow_map
     shape, points, n = _receivers(shadow_map, receivers, normals)
     result, flat = _result(out, shape, points.dtype)
-    more = [np.empty((len(flat), m.channels), flat.dtype), np.empty_like(flat)] if full_output else None
+    wanted = _arrays.flag("full_output", full_output)
+    more = [np.empty((len(flat), m.channels), flat.dtype), np.empty_like(flat)] if wanted else None
     _kernels.filtered(
         shadow_map.depth,
         shadow_map._geometry(),

@@ -152,7 +152,8 @@ def variance_soft(
     granted = _bias(m, bias, slope_bias, normal_offset, light_bleeding)
     shape, points, n = _receivers(shadow_map, receivers, normals)
     result, flat = _result(out, shape, points.dtype)
-    more = [np.empty_like(flat) for _ in range(3)] if full_output else None
+    wanted = _arrays.flag("full_output", full_output)
+    more = [np.empty_like(flat) for _ in range(3)] if wanted else None
     store = (m.moments, m._levels(), m.filter == "summed_area", m.reduce, m._range())
     geometry, width = shadow_map._geometry(), (*sides, searched)
     _kernels.filtered(shadow_map.depth, geometry, perspective, store, points, n, asked, granted, width, flat, more)

@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Callable
 from dataclasses import dataclass
-from typing import Any, Literal, TypeAlias
+from typing import Any, Literal, NamedTuple, TypeAlias
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -14,16 +14,18 @@ from .. import _arrays
 from .._arrays import Floats
 from .._kernels import shadow as _kernels
 from ..light import DirectionalLight, DiskLight, PointLight, PolygonLight, RectLight, SphereLight, SpotLight
+from ._fit import _fit_orthographic, _fit_perspective, _grow, _light_frame, _snapped
+from ._fit import _unit as _unit
 
 __all__ = ["ShadowMap", "shadow_map"]
 
 Cull: TypeAlias = Literal["none", "back", "front"]
 Light: TypeAlias = DirectionalLight | PointLight | SpotLight | RectLight | DiskLight | SphereLight | PolygonLight
 _MAX_RESOLUTION = 16384
-# How far from its axis a light's map may look: 75 degrees.
-_MAX_TANGENT = math.tan(math.radians(75.0))
-# Nothing nearer than this fraction of the farthest depth is drawn into a perspective map.
-_NEAREST = 1e-4
+Surface: TypeAlias = Literal["first", "second", "midpoint"]
+Bits: TypeAlias = Literal[16, 24, 32] | None
+_SURFACES = ("first", "second", "midpoint")
+_BITS = (16, 24, 32)
 
 
 @dataclass(frozen=True, eq=False)
@@ -34,7 +36,8 @@ class ShadowMap:
     ----------
     depth : array_like, shape (H, W)
         Depth at texel centres, linear along the light's axis, infinite where nothing was hit. Row 0 is the top. Its
-        precision is that of every lookup.
+        precision is that of every lookup. With `bits`, integers q that stand for near + q · step, the largest of them
+        for nothing.
     projection : {"perspective", "orthographic"}
         Whether texels are rays from a point, or parallel.
     position : array_like, shape (3,)
@@ -47,6 +50,10 @@ class ShadowMap:
         The least and the greatest depth of anything in the map.
     light_size : (float, float)
         Sides of the light along right and up, in world units; 0 for a light without extent.
+    bits : {None, 16, 24, 32}
+        Whether depth is stored as integers, and of which size: 16 bits as uint16, 24 and 32 as uint32.
+    dtype : float32 or float64
+        The precision of lookups where depth is stored as integers; otherwise that of `depth`.
 
     Raises
     ------
@@ -55,7 +62,7 @@ class ShadowMap:
         other, the window has no extent, or depths are out of order (or negative in a perspective map).
     """
 
-    depth: Floats
+    depth: NDArray[Any]
     projection: Literal["perspective", "orthographic"]
     position: NDArray[np.float64]
     frame: NDArray[np.float64]
@@ -63,17 +70,20 @@ class ShadowMap:
     near: float
     far: float
     light_size: tuple[float, float] = (0.0, 0.0)
+    bits: Bits = None
+    dtype: np.dtype[Any] = np.dtype(np.float32)  # noqa: RUF009
 
     def __post_init__(self) -> None:
         def fix(name: str, value: Any) -> None:
             object.__setattr__(self, name, value)
 
-        depth = _arrays.floats("depth", self.depth)
+        depth = _arrays.floats("depth", self.depth) if self.bits is None else _integers(self.depth, self.bits)
         if depth.ndim != 2 or 0 in depth.shape:
             raise ValueError(f"depth: expected shape (H, W), neither zero, got {depth.shape}")
         if np.isnan(depth.min()):
             raise ValueError("depth: expected numbers or infinity, got NaN")
         fix("depth", depth)
+        fix("dtype", depth.dtype if self.bits is None else _arrays.precision("dtype", self.dtype))
         _arrays.choice("projection", self.projection, ("perspective", "orthographic"))
         for name, shape in (("position", (3,)), ("frame", (3, 3)), ("window", (4,))):
             value = _arrays.floats(name, getattr(self, name), np.float64)
@@ -127,6 +137,24 @@ class ShadowMap:
             ]
         return np.asarray(projection, np.float64) @ self.view
 
+    @property
+    def step(self) -> float:
+        """The depth between two stored integers, of which rounding loses half at most; 0 where depths are floats."""
+        return 0.0 if self.bits is None else (self.far - self.near) / (2**self.bits - 2)
+
+    @property
+    def bytes(self) -> int:
+        """What the depths occupy."""
+        return self.depth.nbytes
+
+    def depths(self) -> Floats:
+        """Depths as numbers, infinite where there is nothing: `depth` itself, or what its integers stand for."""
+        if self.bits is None:
+            return self.depth
+        found = (self.near + self.step * self.depth.astype(np.float64)).astype(self.dtype)
+        found[self.depth == 2**self.bits - 1] = np.inf
+        return found
+
     def texel_size(self, depth: float = 1.0) -> float:
         """The larger side of a texel in world units, at a depth (which matters to a perspective map alone)."""
         left, right, bottom, top = self.window
@@ -136,6 +164,24 @@ class ShadowMap:
 
     def _geometry(self) -> list[float]:
         return [*self.position, *self.frame.ravel(), *self.window, self.near]
+
+    def _chart(self, chosen: tuple[NDArray[np.uint8], int] | None = None) -> tuple[Any, ...]:
+        """The map as kernels take it, for all receivers or for those that chose it."""
+        steps = None if self.bits is None else (self.near, self.step, 2**self.bits - 1)
+        return self.depth, self._geometry(), self.projection == "perspective", steps, None, chosen
+
+
+def _integers(value: Any, bits: Any) -> NDArray[Any]:
+    """Stored depths of so many bits."""
+    if isinstance(bits, bool) or bits not in _BITS:
+        raise ValueError(f"bits: expected None, 16, 24 or 32, got {bits!r}")
+    given = _arrays.array("depth", value)
+    wanted = np.dtype(np.uint16 if bits == 16 else np.uint32)
+    if given.dtype != wanted:
+        raise TypeError(f"depth: expected {wanted} for {bits} bits, got {given.dtype}")
+    if given.size and int(given.max()) >= 2**bits:
+        raise ValueError(f"depth: expected integers below 2**{bits}, got {int(given.max())}")
+    return np.require(given, requirements=["C", "A"])
 
 
 def _sides(name: str, value: Any) -> tuple[float, float]:
@@ -154,6 +200,9 @@ def shadow_map(
     *,
     receivers: ArrayLike | None = None,
     cull: Cull = "none",
+    surface: Surface = "first",
+    bits: Bits = None,
+    snap: bool = False,
     progress: bool | Callable[[int, int], object] | None = None,
 ) -> ShadowMap:
     """Draw the depth of a mesh as a light sees it.
@@ -165,17 +214,27 @@ def shadow_map(
     faces : array_like of int, shape (F, 3)
         Triangles.
     light : light of shadelab.light, but for ambient light
-        A point light and a sphere are seen through one perspective map towards the scene's middle, a spot light through
-        one along its axis, a rectangle, a disk or a polygon through one from its centre along its normal, a directional
-        light through a parallel one. All are fitted to the mesh. For `pcss` round lights and polygons are squares of
-        the same area.
+        A point light and a sphere are seen through one perspective map towards the scene's middle (`cube_shadow_map`
+        looks all around), a spot light through one along its axis, a rectangle, a disk or a polygon through one from
+        its centre along its normal, a directional light through a parallel one. All are fitted to the mesh. For `pcss`
+        round lights and polygons are squares of the same area.
     resolution : int or (int, int)
         Texels along both sides, or (width, height); at most 16384.
     receivers : array_like, shape (..., 3), optional
         Points that will be looked up. The map is then fitted to what lies between them and the light, which gives
-        finer texels where a large scene casts onto a small view.
+        finer texels where a large scene casts onto a small view. Those that are not finite do not count; an empty
+        batch asks for nothing, and the map is fitted to the mesh.
     cull : {"none", "back", "front"}
         Faces that are dropped. "front" keeps what faces away from the light: less acne, more leaks.
+    surface : {"first", "second", "midpoint"}
+        The depth that is kept: of the first surface that light meets; of the next behind it; or half way between the
+        two. With the last two the lit sides of closed bodies need no bias, neither constant nor by slope.
+    bits : {None, 16, 24, 32}
+        Store depths in integers of so many bits, in equal steps between the nearest and the farthest depth drawn.
+    snap : bool
+        Of directional light: texels lie at whole multiples of their size, which is one of 8 to an octave, in a frame
+        that depends on the mesh and the light alone. Receivers that move then shift the map by whole texels, and
+        edges of shadows stay where they are. Costs up to an eighth of the resolution.
     progress : bool or callable, optional
         True shows a bar; a callable gets (done, total).
 
@@ -186,17 +245,25 @@ def shadow_map(
     Raises
     ------
     TypeError, ValueError
-        If an argument has the wrong type or shape, a vertex is not finite, or the light points nowhere.
+        If an argument has the wrong type or shape, a vertex is not finite, no receiver is, the light points nowhere, or
+        texels of light that is not directional are to be snapped.
 
     Notes
     -----
-    Depth is linear and exact to a few roundings of its precision. Perspective maps look at most 75 degrees away from
-    their axis; what lies outside of a map counts as lit. So a point light within its scene needs several maps, and a
-    two-sided rectangular light is seen from its front alone. Cost: one rasterisation, and `resolution`² items.
+    Depth is linear and exact to a few roundings of its precision; with `bits`, to half a `ShadowMap.step` beside them,
+    which lookups grant to receivers. Perspective maps look at most 75 degrees away from their axis; what lies outside
+    of a map counts as lit. So a point light within its scene needs `cube_shadow_map`, and a two-sided rectangular light
+    is seen from its front alone. Cost: one rasterisation (two for other surfaces than the first), and `resolution`²
+    items.
+
+    The second surface is that of the texel's own ray. An open sheet has none of its own: what lies behind it takes its
+    place, and with "second" the sheet casts no shadow on it. "midpoint" stands half way, wherever that is. Where bodies
+    touch or are thinner than a texel's slope, acne or leaks return.
 
     References
     ----------
-    L. Williams, *Casting Curved Shadows on Curved Surfaces*, 1978.
+    L. Williams, *Casting Curved Shadows on Curved Surfaces*, 1978. Y. Wang, S. Molnar, *Second-Depth Shadow Mapping*,
+    1994. A. Woo, *The Shadow Depth Map Revisited*, Graphics Gems III, 1992 (midpoint).
 
     Examples
     --------
@@ -206,28 +273,43 @@ def shadow_map(
     >>> shadow_map(triangle, [[0, 2, 1]], light, 8).depth.shape
     (8, 8)
     """
-    points = _arrays.vectors("positions", positions)
-    if points.ndim != 2:
-        raise ValueError(f"positions: expected shape (V, 3), got {points.shape}")
-    finite = np.isfinite(points).all(-1)
-    if not finite.all():
-        raise ValueError(f"positions: vertex {int(np.argmin(finite))} is not finite")
-    given = np.asarray(faces)
-    triangles = _arrays.indices("faces", given.reshape(0, 3) if given.size == 0 else given, 3, len(points))
-    width, height = (resolution, resolution) if np.ndim(resolution) == 0 else resolution  # type: ignore[misc]
-    width = _arrays.count("resolution", width, 1, _MAX_RESOLUTION)
-    height = _arrays.count("resolution", height, 1, _MAX_RESOLUTION)
+    points, triangles = _casters(positions, faces)
+    size = _size(resolution)
     _arrays.choice("cull", cull, ("none", "back", "front"))
-    looked_up = None if receivers is None else _arrays.vectors("receivers", receivers).reshape(-1, 3)
-    if looked_up is not None and not (seen := np.isfinite(looked_up).all(-1)).all():
-        looked_up = looked_up[seen] if seen.any() else None
+    how = _how(surface, bits)
+    whole = _arrays.flag("snap", snap)
+    looked_up = None if receivers is None else _finite("receivers", receivers)
 
-    perspective, origin, frame, sides = _light_frame(light, points, looked_up)
+    if whole and not isinstance(light, DirectionalLight):
+        raise ValueError(f"snap: expected directional light for whole texels, got {type(light).__name__}")
+    seen, sides = _fitted(points, triangles, light, size, looked_up, whole)
+    return _drawn(points, triangles, seen, size, cull, how, sides, _arrays.progress_callback(progress, "shadow map"))
+
+
+class _View(NamedTuple):
+    """What a map looks at."""
+
+    perspective: bool
+    origin: NDArray[np.float64]
+    frame: NDArray[np.float64]
+    window: NDArray[np.float64]
+    near: float
+    far: float
+
+
+def _fitted(
+    points: Floats,
+    triangles: NDArray[np.int32],
+    light: Light,
+    size: tuple[int, int],
+    looked_up: Floats | None,
+    snap: bool = False,
+) -> tuple[_View, tuple[float, float]]:
+    """What the one map of a light looks at, and the light's sides."""
+    perspective, origin, frame, sides = _light_frame(light, points, None if snap else looked_up)
     # The map and its lookups must round the frame alike.
-    origin, frame = (a.astype(points.dtype).astype(np.float64) for a in (origin, frame))
-    cast = np.zeros(len(points), bool)
-    cast[triangles] = True
-    used = points if cast.all() else points[cast]
+    origin, frame = (_rounded(a, points.dtype) for a in (origin, frame))
+    used = _used(points, triangles)
     if perspective:
         window, near, far = _fit_perspective(used, points, triangles, origin, frame, looked_up, sides)
         if isinstance(light, SpotLight) and light.outer_angle < math.pi / 2:
@@ -235,153 +317,90 @@ def shadow_map(
             window = np.clip(window, -cone, cone)
     else:
         origin, window, near, far = _fit_orthographic(used, origin, frame, looked_up)
-        origin = origin.astype(points.dtype).astype(np.float64)
-    window = _grow(window, (width, height)).astype(points.dtype).astype(np.float64)
+        origin = _rounded(origin, points.dtype)
+    if snap and min(size) > 8:
+        middle = np.array([window[0] + window[1], window[2] + window[3]]) / 2.0
+        window = _snapped(middle, float(max(np.ptp(window[:2]), np.ptp(window[2:]), 1e-30)), size, 2.0, 8)
+    else:
+        window = _grow(window, size)
+    return _View(perspective, origin, frame, _rounded(window, points.dtype), near, far), sides
 
-    depth = np.empty((height, width), points.dtype)
-    view = (list(origin), frame.tolist(), list(window), near, far, perspective)
-    _kernels.shadow_map(points, triangles, view, cull, _arrays.progress_callback(progress, "shadow map"), depth)
+
+def _drawn(
+    points: Floats,
+    triangles: NDArray[np.int32],
+    seen: _View,
+    size: tuple[int, int],
+    cull: str,
+    how: tuple[str, Bits],
+    sides: tuple[float, float],
+    watch: Any = None,
+) -> ShadowMap:
+    """The map of a view that fits the points' precision."""
+    surface, bits = how
+    depth = np.empty(size[::-1], points.dtype)
+    near, far = seen.near, seen.far
+    view = (list(seen.origin), seen.frame.tolist(), list(seen.window), near, far, seen.perspective)
+    _kernels.shadow_map(points, triangles, view, cull, surface, watch, depth)
     # What was drawn is a tighter bound than what was fitted, and the blocker search starts there.
     drawn = np.isfinite(depth)
     if drawn.any():
         near, far = float(depth.min()), float(depth.max(where=drawn, initial=-np.inf))
-    kind: Literal["perspective", "orthographic"] = "perspective" if perspective else "orthographic"
-    return ShadowMap(depth, kind, origin, frame, window, near, far, sides)
+    stored: NDArray[Any] = depth
+    if bits is not None:
+        stored = np.empty(depth.shape, np.uint16 if bits == 16 else np.uint32)
+        _kernels.quantize_depth(depth, (near, (far - near) / (2**bits - 2), 2**bits - 1), stored)
+    kind: Literal["perspective", "orthographic"] = "perspective" if seen.perspective else "orthographic"
+    return ShadowMap(stored, kind, seen.origin, seen.frame, seen.window, near, far, sides, bits, points.dtype)
 
 
-def _unit(name: str, v: NDArray[np.float64]) -> NDArray[np.float64]:
-    # Squares of the largest and least numbers are out of range.
-    largest = np.abs(v).max()
-    if np.isfinite(largest) and largest > 0:
-        v = v / largest
-    length = np.linalg.norm(v)
-    if not (np.isfinite(length) and length > 0):
-        raise ValueError(f"{name}: expected a direction, got {v.tolist()}")
-    return np.asarray(v / length)
+def _rounded(a: NDArray[np.float64], dtype: Any) -> NDArray[np.float64]:
+    return a.astype(dtype).astype(np.float64)
 
 
-def _frame_along(axis: NDArray[np.float64]) -> NDArray[np.float64]:
-    """Right, up, axis, with the world's y up unless the axis is close to it."""
-    world_up = np.array([0.0, 1.0, 0.0]) if abs(axis[1]) < 0.99 else np.array([0.0, 0.0, 1.0])
-    right = _unit("light", np.cross(axis, world_up))
-    return np.stack([right, np.cross(right, axis), axis])
+def _casters(positions: ArrayLike, faces: ArrayLike) -> tuple[Floats, NDArray[np.int32]]:
+    points = _arrays.vectors("positions", positions)
+    if points.ndim != 2:
+        raise ValueError(f"positions: expected shape (V, 3), got {points.shape}")
+    finite = np.isfinite(points).all(-1)
+    if not finite.all():
+        raise ValueError(f"positions: vertex {int(np.argmin(finite))} is not finite")
+    given = _arrays.array("faces", faces)
+    return points, _arrays.indices("faces", given.reshape(0, 3) if given.size == 0 else given, 3, len(points))
 
 
-def _light_frame(
-    light: Light, points: Floats, receivers: Floats | None
-) -> tuple[bool, NDArray[np.float64], NDArray[np.float64], tuple[float, float]]:
-    """Whether the map is perspective, its origin, its frame, and the light's sides."""
-    if isinstance(light, RectLight):
-        u, v = np.asarray(light.edge_u, np.float64), np.asarray(light.edge_v, np.float64)
-        axis, right = _unit("light", np.cross(u, v)), _unit("light", u)
-        frame = np.stack([right, np.cross(right, axis), axis])
-        # Edges need not be square to each other: what counts is the extent along the map's sides.
-        return True, np.asarray(light.center, np.float64), frame, (float(np.linalg.norm(u)), float(abs(v @ frame[1])))
-    if isinstance(light, DiskLight | PolygonLight):
-        center = light.center if isinstance(light, DiskLight) else np.mean(light.corners, 0)
-        side = math.sqrt(light.area)
-        frame = _frame_along(_unit("light", np.asarray(light.normal, np.float64)))
-        return True, np.asarray(center, np.float64), frame, (side, side)
-    if isinstance(light, SpotLight):
-        axis = _unit("light", np.asarray(light.direction, np.float64))
-        return True, np.asarray(light.position, np.float64), _frame_along(axis), (0.0, 0.0)
-    seen = points if receivers is None or not receivers.size else receivers
-    finite = seen[np.isfinite(seen).all(-1)].astype(np.float64)
-    middle = (finite.min(0) + finite.max(0)) / 2 if len(finite) else np.zeros(3)
-    if isinstance(light, PointLight | SphereLight):
-        position = np.asarray(light.position if isinstance(light, PointLight) else light.center, np.float64)
-        away = middle - position
-        axis = _unit("light", away) if np.linalg.norm(away) > 0 else np.array([0.0, -1.0, 0.0])
-        side = math.sqrt(math.pi) * light.radius if isinstance(light, SphereLight) else 0.0
-        return True, position, _frame_along(axis), (side, side)
-    if isinstance(light, DirectionalLight):
-        return False, middle, _frame_along(_unit("light", np.asarray(light.direction, np.float64))), (0.0, 0.0)
-    raise TypeError(f"light: expected a light that a map can look from, got {type(light).__name__}")
+def _used(points: Floats, triangles: NDArray[np.int32]) -> Floats:
+    """The points that some triangle has for a corner."""
+    cast = np.zeros(len(points), bool)
+    cast[triangles] = True
+    return points if cast.all() else points[cast]
 
 
-def _span(
-    points: Floats, origin: NDArray[np.float64], frame: NDArray[np.float64], near: float | None = None
-) -> tuple[NDArray[np.float64], float, float] | None:
-    """Window, least and greatest depth of points; at unit depth, from `near` on, if given. None if none is seen."""
-    low, high = _kernels.span(np.ascontiguousarray(points), list(origin), frame.tolist(), near)
-    if not low[2] <= high[2]:
+def _size(resolution: Any) -> tuple[int, int]:
+    """Width and height in texels."""
+    try:
+        width, height = (resolution, resolution) if np.ndim(resolution) == 0 else resolution
+    except ValueError:
+        raise ValueError(f"resolution: expected a number or (width, height), got {resolution!r}") from None
+    return (
+        _arrays.count("resolution", width, 1, _MAX_RESOLUTION),
+        _arrays.count("resolution", height, 1, _MAX_RESOLUTION),
+    )
+
+
+def _how(surface: Any, bits: Any) -> tuple[str, Bits]:
+    _arrays.choice("surface", surface, _SURFACES)
+    if bits is not None and (isinstance(bits, bool) or bits not in _BITS):
+        raise ValueError(f"bits: expected None, 16, 24 or 32, got {bits!r}")
+    return surface, bits
+
+
+def _finite(name: str, receivers: ArrayLike) -> Floats | None:
+    """The points that are finite, (n, 3); None for an empty batch."""
+    points = _arrays.vectors(name, receivers).reshape(-1, 3)
+    if not len(points):
         return None
-    return np.array([low[0], high[0], low[1], high[1]]), low[2], high[2]
-
-
-def _fit_perspective(
-    used: Floats,
-    points: Floats,
-    triangles: NDArray[np.int32],
-    origin: NDArray[np.float64],
-    frame: NDArray[np.float64],
-    receivers: Floats | None,
-    sides: tuple[float, float],
-) -> tuple[NDArray[np.float64], float, float]:
-    """The window at unit depth, and the depths to draw between."""
-    whole = _span(used, origin, frame)
-    if whole is None or whole[2] <= 0.0:
-        return np.array([-1.0, 1, -1, 1]), 1.0, 1.0
-    far = whole[2]
-    near = far * _NEAREST
-    front = used
-    if whole[1] < near:
-        # Where an edge passes the near plane, the triangle is seen from there on.
-        corners = (points.astype(np.float64) - origin)[triangles]
-        ends = np.concatenate([corners, np.roll(corners, -1, axis=1)], axis=-1).reshape(-1, 6)
-        depths = np.stack([ends[:, :3] @ frame[2], ends[:, 3:] @ frame[2]])
-        passing = (depths[0] < near) != (depths[1] < near)
-        ends, depths = ends[passing], depths[:, passing]
-        share = ((near - depths[0]) / (depths[1] - depths[0]))[:, None]
-        # A rounding beyond the plane, so that none is lost before it.
-        entries = ends[:, :3] + share * (ends[:, 3:] - ends[:, :3]) + frame[2] * (near * 1e-9)
-        front = np.concatenate([used.astype(np.float64), entries + origin])
-    seen = _span(front, origin, frame, near * (1.0 - 1e-6))
-    if seen is None:
-        return np.array([-1.0, 1, -1, 1]), 1.0, 1.0
-    window, nearest, _ = seen
-    if receivers is not None:
-        around = _span(receivers, origin, frame, near)
-        if around is not None:
-            # A receiver looks at the light past blockers as near as any: its search may reach so far aside.
-            reach = np.asarray(sides) / 2 * max(1 / nearest - 1 / around[2], 0.0)
-            window = _common(window, around[0] + np.array([-1, 1, -1, 1]) * np.repeat(reach, 2))
-    return np.clip(window, -_MAX_TANGENT, _MAX_TANGENT), near, far
-
-
-def _fit_orthographic(
-    used: Floats,
-    origin: NDArray[np.float64],
-    frame: NDArray[np.float64],
-    receivers: Floats | None,
-) -> tuple[NDArray[np.float64], NDArray[np.float64], float, float]:
-    """The origin moved before everything, the window, and the depths to draw between."""
-    whole = _span(used, origin, frame)
-    if whole is None:
-        return origin, np.array([-1.0, 1, -1, 1]), 0.0, 1.0
-    window, low, high = whole
-    margin = max((high - low) * 0.01, 1e-6 * max(abs(low), abs(high), float(np.abs(window).max())), 1e-30)
-    around = None if receivers is None else _span(receivers, origin, frame)
-    if around is not None:
-        window = _common(window, around[0])
-    # One margin before the nearest, one behind the farthest caster.
-    moved = origin + frame[2] * (low - 2 * margin)
-    return moved, window, margin, high - low + 3 * margin
-
-
-def _common(a: NDArray[np.float64], b: NDArray[np.float64]) -> NDArray[np.float64]:
-    """What two windows share; the first if they share nothing."""
-    both = np.array([max(a[0], b[0]), min(a[1], b[1]), max(a[2], b[2]), min(a[3], b[3])])
-    return both if both[0] < both[1] and both[2] < both[3] else a
-
-
-def _grow(window: NDArray[np.float64], size: tuple[int, int]) -> NDArray[np.float64]:
-    """Two texels more on each side, so that a silhouette lies within; never without extent."""
-    grown = window.astype(np.float64).copy()
-    smallest = 1e-3 * max(float(np.abs(window).max()), float(np.ptp(window[:2])), float(np.ptp(window[2:])), 1e-30)
-    for i, texels in ((0, size[0]), (2, size[1])):
-        extent = max(grown[i + 1] - grown[i], smallest)
-        middle = (grown[i] + grown[i + 1]) / 2
-        half = extent * (0.5 + 2.0 / texels)
-        grown[i], grown[i + 1] = middle - half, middle + half
-    return grown
+    seen = np.isfinite(points).all(-1)
+    if not seen.any():
+        raise ValueError(f"{name}: expected a finite point, got none among {len(points)}")
+    return points if seen.all() else points[seen]

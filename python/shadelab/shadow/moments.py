@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Any, Literal, TypeAlias
 
 import numpy as np
@@ -11,7 +11,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from .. import _arrays, image
 from .._kernels import shadow as _kernels
-from .maps import ShadowMap
+from .maps import ShadowMap, _finite
 
 __all__ = ["MomentMap", "moment_map"]
 
@@ -99,11 +99,11 @@ def moment_map(
     kind: Kind = "moment",
     *,
     filter: Filter = "gaussian",
-    sigma: float = 2.0,
+    sigma: float | None = None,
     reduce: int = 1,
-    exponents: tuple[float, float] | float = (40.0, 5.0),
+    exponents: tuple[float, float] | float | None = None,
     bits: Literal[16, None] = None,
-    precision: Literal["double", "compensated", "single"] = "double",
+    precision: Literal["double", "compensated", "single"] | None = None,
     receivers: ArrayLike | None = None,
 ) -> MomentMap:
     """Take moments of a shadow map's depths, and filter them beforehand.
@@ -117,20 +117,23 @@ def moment_map(
     filter : {"none", "gaussian", "mip", "summed_area"}
         "gaussian" filters once, for lookups of one width at one texel's price. "mip" and "summed_area" let each lookup
         choose its width: roughly round, or the very box.
-    sigma : float
-        Standard deviation of the Gaussian in texels of the shadow map; it is cut at three of them.
+    sigma : float, optional
+        Standard deviation of the Gaussian in texels of the shadow map, 2 by default; it is cut at three of them. For
+        filter "gaussian" alone.
     reduce : int
         Moments are averaged over squares of so many texels of the shadow map first. Where the filter is wide nothing is
         lost by it but cost.
-    exponents : (float, float) or float
-        Of "exponential_variance": e^(az) and -e^(-bz), or the first alone. At most 42 in single precision.
+    exponents : (float, float) or float, optional
+        Of "exponential_variance": e^(az) and -e^(-bz), or the first alone; (40, 5) by default. At most 42 in single
+        precision.
     bits : {None, 16}
         16 stores four powers in 16 bits each, by the transform of Peters et al. (2017).
-    precision : {"double", "compensated", "single"}
-        Of the sums in a table of "summed_area": see `shadelab.image.summed_area_table`.
+    precision : {"double", "compensated", "single"}, optional
+        Of the sums in a table of "summed_area", "double" by default: see `shadelab.image.summed_area_table`.
     receivers : array_like, shape (..., 3), optional
         Points that will be looked up. Depth then reaches to the farthest of them; by default as far as the map's own,
         and once more as far where a part of the map is empty, since empty texels must lie behind all that is looked up.
+        Those that are not finite do not count, nor does an empty batch.
 
     Returns
     -------
@@ -139,7 +142,7 @@ def moment_map(
     Raises
     ------
     TypeError, ValueError
-        If an argument has the wrong type or range, or does not go with the others.
+        If an argument has the wrong type or range, or does not go with the others, or no receiver is finite.
 
     Notes
     -----
@@ -167,11 +170,25 @@ def moment_map(
         raise TypeError(f"shadow_map: expected a ShadowMap, got {type(shadow_map).__name__}")
     _arrays.choice("kind", kind, _KINDS)
     _arrays.choice("filter", filter, _FILTERS)
-    _arrays.choice("precision", precision, ("double", "compensated", "single"))
+    for name, value, goes in (
+        ("sigma", sigma, filter == "gaussian"),
+        ("precision", precision, filter == "summed_area"),
+        ("exponents", exponents, kind == "exponential_variance"),
+    ):
+        if value is not None and not goes:
+            raise ValueError(f"{name}: goes with another kind or filter than {kind!r} and {filter!r}")
+    sums = "double" if precision is None else precision
+    _arrays.choice("precision", sums, ("double", "compensated", "single"))
+    if shadow_map.bits is not None:
+        shadow_map = replace(shadow_map, depth=shadow_map.depths(), bits=None)
     depth, dtype = shadow_map.depth, shadow_map.depth.dtype
     square = _arrays.count("reduce", reduce, 1, max(depth.shape))
-    wide = _arrays.number("sigma", sigma, 0.0)
-    own = _exponents(exponents, dtype) if kind == "exponential_variance" else (0.0, 0.0)
+    wide = 2.0 if sigma is None else _arrays.number("sigma", sigma, 0.0)
+    own = (
+        _exponents((40.0, 5.0) if exponents is None else exponents, dtype)
+        if kind == "exponential_variance"
+        else (0.0, 0.0)
+    )
     if bits is not None:
         _whole(bits, kind, filter)
     near, far = _depths(shadow_map, receivers)
@@ -185,9 +202,9 @@ def moment_map(
         moments = image.gaussian_filter(moments, wide / square, truncate=3.0)
         reach += 2.0 * wide
     elif filter == "summed_area":
-        moments = image.summed_area_table(moments, precision=precision)
+        moments = image.summed_area_table(moments, precision=sums)
         if not np.isfinite(moments[-1, -1]).all():
-            raise ValueError(f"exponents: sums of e^({2 * own[0]:g} z) overflow with precision {precision!r}")
+            raise ValueError(f"exponents: sums of e^({2 * own[0]:g} z) overflow with precision {sums!r}")
     elif filter == "mip":
         moments = np.concatenate([level.reshape(-1, channels) for level in image.mip_chain(moments)])
     if bits is not None:
@@ -219,10 +236,9 @@ def _depths(shadow_map: ShadowMap, receivers: ArrayLike | None) -> tuple[float, 
     """The depths that are -1 and 1."""
     near, far = shadow_map.near, shadow_map.far
     if receivers is not None:
-        points = _arrays.vectors("receivers", receivers).reshape(-1, 3)
-        seen = (points.astype(np.float64) - shadow_map.position) @ shadow_map.axis
-        seen = seen[np.isfinite(seen)]
-        if len(seen):
+        points = _finite("receivers", receivers)
+        if points is not None:
+            seen = (points.astype(np.float64) - shadow_map.position) @ shadow_map.axis
             # A little beyond, so that rounding puts none of them there.
             farthest = float(seen.max())
             far = max(far, farthest + 1e-3 * abs(farthest - near))

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from typing import Literal, NamedTuple, TypeAlias, overload
+from typing import Any, Literal, NamedTuple, TypeAlias, overload
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -11,7 +11,8 @@ from numpy.typing import ArrayLike
 from .. import _arrays
 from .._arrays import Floats
 from .._kernels import shadow as _kernels
-from ._lookup import Kernel, _granted, _receivers, _result, _taps
+from ._lookup import Kernel, _granted, _looked_up, _maps, _receivers, _result, _taps
+from ._sets import MapSet
 from .maps import ShadowMap, _sides
 
 __all__ = ["PCSS", "pcss"]
@@ -34,7 +35,7 @@ class PCSS(NamedTuple):
 
 @overload
 def pcss(
-    shadow_map: ShadowMap,
+    shadow_map: ShadowMap | MapSet,
     receivers: ArrayLike,
     normals: ArrayLike | None = ...,
     *,
@@ -53,7 +54,7 @@ def pcss(
 ) -> Floats: ...
 @overload
 def pcss(
-    shadow_map: ShadowMap,
+    shadow_map: ShadowMap | MapSet,
     receivers: ArrayLike,
     normals: ArrayLike | None = ...,
     *,
@@ -71,7 +72,7 @@ def pcss(
     out: Floats | None = ...,
 ) -> PCSS: ...
 def pcss(
-    shadow_map: ShadowMap,
+    shadow_map: ShadowMap | MapSet,
     receivers: ArrayLike,
     normals: ArrayLike | None = None,
     *,
@@ -152,25 +153,28 @@ def pcss(
     >>> found.lit, found.penumbra
     (array([0. , 0.5]), array([0.4, 0.4]))
     """
-    granted = _granted(shadow_map, normals, bias, slope_bias, normal_offset, receiver_plane)
-    sides = shadow_map.light_size if light_size is None else _sides("light_size", light_size)
+    maps = _maps(shadow_map)
+    granted = _granted(normals, bias, slope_bias, normal_offset, receiver_plane)
+    sides = maps.light_size if light_size is None else _sides("light_size", light_size)
     if light_size is None and max(sides) == 0.0:
         raise ValueError("light_size: the map's light has no extent, so its width must be given")
-    perspective = shadow_map.projection == "perspective"
-    if not perspective:
+    if maps.projection == "orthographic":
         if max(sides) >= math.pi:
             raise ValueError(f"light_size: expected an angle below pi, got {max(sides):g}")
         sides = 2.0 * math.tan(sides[0] / 2.0), 2.0 * math.tan(sides[1] / 2.0)
     if kernel is None:
-        kernel = "box" if max(shadow_map.light_size) > 0.0 else "vogel"
+        kernel = "box" if max(maps.light_size) > 0.0 else "vogel"
     frustum = _arrays.choice("search", search, ("region", "frustum")) == "frustum"
     blockers = _taps("blocker_samples", kernel, blocker_samples, seed)
     filtered = _taps("filter_samples", kernel, filter_samples, seed)
-    shape, points, n = _receivers(shadow_map, receivers, normals)
+    wanted = _arrays.flag("full_output", full_output)
+    shape, points, n = _receivers(maps, receivers, normals)
     result, flat = _result(out, shape, points.dtype)
-    more = [np.empty_like(flat) for _ in range(3)] if full_output else None
-    geometry = shadow_map._geometry()
-    _kernels.pcss(
-        shadow_map.depth, geometry, perspective, points, n, sides, blockers, frustum, filtered, granted, flat, more
-    )
-    return result if more is None else PCSS(result, *(a.reshape(shape) for a in more))
+    results = [flat, *(np.empty_like(flat) for _ in range(3 if wanted else 0))]
+
+    def look(_: Any, chart: tuple[Any, ...], granted: Any, to: Any) -> None:
+        more = list(to[1:]) if len(to) > 1 else None
+        _kernels.pcss(chart, points, n, sides, blockers, frustum, filtered, granted, to[0], more)
+
+    _looked_up(maps, points, n, granted, results, [1.0, math.nan, 0.0, 0.0][: len(results)], look)
+    return PCSS(result, *(a.reshape(shape) for a in results[1:])) if wanted else result

@@ -4,36 +4,23 @@ mod closed;
 mod field;
 mod maps;
 mod moments;
+mod chart;
 mod compared;
+mod paged;
 mod rays;
 mod soft;
 
-use crate::python::array::In;
 use crate::real::Real;
-use crate::shadow::lookup::{Bias, Map};
+use crate::shadow::lookup::Bias;
 use crate::shadow::pattern::{Kind, Pattern};
-use numpy::Element;
 use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
 
-/// Origin (3), rows right, up, axis (9), window (4) and near (1) of a map.
-pub type Geometry = [f64; 17];
+pub use chart::{Chart, Geometry, map};
 /// Constant, slope, normal offset, plane.
 pub type Granted = (f64, f64, f64, bool);
 /// Kind, samples, seed.
 pub type Taps<'a> = (&'a str, usize, Option<u64>);
-
-pub fn map<'a, T: Real + Element>(depth: &'a In<'_, T>, g: &Geometry) -> PyResult<Map<'a, T>> {
-    let at = |i: usize| T::of(g[i]);
-    let three = |i: usize| [at(i), at(i + 1), at(i + 2)];
-    let frame = [three(3), three(6), three(9)];
-    let size = match depth.shape() {
-        &[height, width] => [width, height],
-        _ => return Err(PyValueError::new_err("depth: expected shape (H, W)")),
-    };
-    Map::new(depth.slice()?, size, three(0), frame, [at(12), at(13), at(14), at(15)], at(16))
-        .ok_or_else(|| PyValueError::new_err("window: expected left < right and bottom < top"))
-}
 
 pub fn bias<T: Real>((constant, slope, normal_offset, plane): Granted) -> Bias<T> {
     Bias { constant: T::of(constant), slope: T::of(slope), normal_offset: T::of(normal_offset), plane }
@@ -70,6 +57,12 @@ pub mod shadow {
     #[pymodule_export]
     use super::field::distance_field;
     #[pymodule_export]
+    use super::maps::cascades;
+    #[pymodule_export]
+    use super::maps::cube_faces;
+    #[pymodule_export]
+    use super::maps::quantize_depth;
+    #[pymodule_export]
     use super::maps::shadow_map;
     #[pymodule_export]
     use super::maps::span;
@@ -85,6 +78,14 @@ pub mod shadow {
     use super::moments::moment_map;
     #[pymodule_export]
     use super::moments::moment_quantize;
+    #[pymodule_export]
+    use super::paged::page_levels;
+    #[pymodule_export]
+    use super::paged::page_marks;
+    #[pymodule_export]
+    use super::paged::page_settle;
+    #[pymodule_export]
+    use super::paged::shadow_pages;
     #[pymodule_export]
     use super::rays::ray_traced;
     #[pymodule_export]

@@ -1,6 +1,6 @@
 //! Bindings of `shadow`: filters as wide as the blockers call for.
 
-use super::{Geometry, Granted, Taps, bias, by_projection, map, pattern};
+use super::{Chart, Granted, Taps, bias, by_projection, pattern};
 use crate::python::array::{In, Out, run};
 use crate::real;
 use crate::real::Real;
@@ -9,9 +9,7 @@ use pyo3::prelude::*;
 #[pyfunction]
 pub fn pcss(
     py: Python<'_>,
-    depth: &Bound<'_, PyAny>,
-    geometry: Geometry,
-    perspective: bool,
+    chart: Chart<'_>,
     receivers: &Bound<'_, PyAny>,
     normals: Option<&Bound<'_, PyAny>>,
     light: [f64; 2],
@@ -23,8 +21,8 @@ pub fn pcss(
     more: Option<[Bound<'_, PyAny>; 3]>,
 ) -> PyResult<()> {
     use crate::shadow::pcss::{Knobs, pcss as kernel};
-    real!(depth, T => {
-        let (depth, points) = (In::<T>::of("depth", depth)?, In::<T>::of("receivers", receivers)?);
+    real!(receivers, T => {
+        let (held, points) = (chart.held::<T>()?, In::<T>::of("receivers", receivers)?);
         let normals = normals.map(|n| In::<T>::of("normals", n)).transpose()?;
         let mut out = Out::<T>::of("out", out)?;
         let mut more = match &more {
@@ -37,9 +35,9 @@ pub fn pcss(
         };
         let (search, filter) = (pattern(search)?, pattern(filter)?);
         let knobs = Knobs { light: light.map(T::of), search: &search, frustum, filter: &filter, bias: bias(granted) };
-        let map = map(&depth, &geometry)?;
+        let map = held.map()?;
         let (p, n) = (points.items()?, normals.as_ref().map(In::items).transpose()?);
         let out = out.slice()?;
-        run(py, None, |watch| by_projection!(perspective, T, kernel, (watch, &map, p, n, &knobs, out, more)))
+        run(py, None, |watch| by_projection!(chart.2, T, kernel, (watch, &map, p, n, &knobs, out, more)))
     })
 }
