@@ -1,5 +1,6 @@
 """Plans: no pass without need, every pass with a reason, and what a study measured where there is one."""
 
+from dataclasses import replace
 from types import SimpleNamespace
 
 import numpy as np
@@ -216,3 +217,41 @@ def test_plans_of_wrong_kinds_are_named():
             sl.renderer.Pass(**{"name": "direct light", "reason": "", **wrong})
     with pytest.raises(TypeError, match="plan: expected a Plan"):
         sl.render(scene, [sl.renderer.Pass("g-buffer", "")])
+
+
+def avenue():
+    """A long road of posts under the sun, seen from its begin."""
+    posts = [Instance(sl.mesh.box((0.4, 3.0, 0.4)), translated(x, 1.5, -z)) for z in range(4, 400, 12) for x in (-3, 3)]
+    road = Instance(sl.mesh.plane((60.0, 900.0)), translated(0, 0, 0))
+    camera = Camera((0, 1.7, 0), (0, 1.2, -10))
+    return Scene([road, *posts], DirectionalLight((0.5, -1, 0.2), (3, 3, 3)), camera)
+
+
+def translated(x, y, z):
+    matrix = np.eye(4)
+    matrix[:3, 3] = x, y, z
+    return matrix
+
+
+def test_long_views_under_the_sun_have_cascades_and_small_ones_none():
+    long = avenue()
+    plan = sl.plan(long, (320, 180))
+    chart = plan.find("shadow map")
+    assert 2 <= chart.settings["cascades"] <= 6 and "parts by distance" in chart.reason
+    assert "pixels wide" in chart.reason and plan.find("shadow").settings["technique"] == "hard"
+    small = sl.plan(Scene([GROUND, BOX], DirectionalLight((0.5, -1, 0.2), (3, 3, 3)), CAMERA), (320, 180))
+    assert "cascades" not in small.find("shadow map").settings
+    assert "one map's texels are at most" in why_not(small, "cascades")
+    # What they are for: less is wrong than with one map, by rays.
+    frame = sl.render(long, plan)
+    settings = {"resolution": 2048}
+    passes = tuple(replace(p, settings=settings) if p.name == "shadow map" else p for p in plan.passes)
+    alone = replace(plan, passes=passes)
+    one = sl.render(long, alone)
+    arrays = long.flatten(np.float32)
+    seen = np.isfinite(frame.depth)
+    bvh = sl.accel.BVH(arrays.positions, arrays.faces)
+    origins = frame.position[seen] + np.float32(1e-3) * frame.normal[seen]
+    exact = ~bvh.any_hit(origins, np.broadcast_to(-np.float32(long.lights[0].direction), origins.shape))
+    off, off_one = (float((f.lit[0][seen] != exact).mean()) for f in (frame, one))
+    assert off < 0.02 and off < 0.6 * off_one

@@ -3,9 +3,13 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Callable
 from typing import Any
 
-from .. import _arrays, light
+import numpy as np
+
+from .. import _arrays, light, shadow
+from ._buffers import g_buffer
 from ._facts import Facts, beyond_one_map, outline, resolution_for, widest_penumbra
 from .passes import LeftOut, Pass
 
@@ -34,10 +38,61 @@ def picked(evidence: Any, max_error: float | None, budget_ms: float | None) -> t
     return choice.technique, dict(choice.knobs), reason
 
 
+# How many pixels a texel may cover where a view is nearest before one map is no longer enough, the largest map, and the
+# most cascades. What filters read about a receiver must lie in its map.
+_COARSEST, _LARGEST, _MOST, _BORDER = 4.0, 2048, 6, 8
+_LOOK = (96, 54)
+
+
+def seen_depths(arrays: Any, camera: Any) -> tuple[float, float] | None:
+    """The least and the greatest depth of what a camera sees; None if it sees nothing."""
+    seen = g_buffer(arrays, camera, _LOOK)
+    if not len(seen.points):
+        return None
+    forward = -np.asarray(camera.view(), np.float64)[2]
+    depth = seen.points @ forward[:3] + forward[3]
+    return float(depth.min()), float(depth.max())
+
+
+def parted(facts: Facts, view: tuple[float, float] | None, slope: float) -> tuple[dict[str, Any], str]:
+    """Cascades for parallel light where one map's texels are too large for a view; else nothing, and why.
+
+    `slope` is how far a corner of the picture is aside at unit depth.
+    """
+    if view is None or not view[0] > 0.0:
+        return {}, "one map serves what is in view"
+    nearest, farthest = view
+    whole = facts.extent / _LARGEST / (nearest * facts.pixel)
+    if whole <= _COARSEST:
+        return {}, f"one map's texels are at most {whole:.2g} pixels wide"
+    # What is nearer than the look showed still lies in the first part.
+    near, far = nearest / 2.0, farthest * 1.1
+
+    def widest(count: int) -> float:
+        splits = shadow.cascade_splits(near, far, count, method="logarithmic")
+        n, f = splits[:-1], splits[1:]
+        middle = np.minimum(f, (n + f) * (1.0 + slope * slope) / 2.0)
+        radius = np.sqrt(np.maximum((f - middle) ** 2 + (f * slope) ** 2, (middle - n) ** 2 + (n * slope) ** 2))
+        texels = 2.0 * radius * (1.0 + 1.0 / 64.0) / (_LARGEST - 2 * _BORDER - 1)
+        return float((texels / (np.maximum(n, nearest) * facts.pixel)).max())
+
+    counts = range(2, _MOST + 1)
+    count = next((c for c in counts if widest(c) <= _COARSEST), min(counts, key=widest))
+    if widest(count) > 0.5 * whole:
+        return {}, "parts of the view would need texels as large as those of one map"
+    reason = f"in {count} parts by distance: texels at most {widest(count):.2g} pixels wide, {whole:.2g} in one map"
+    return {"resolution": _LARGEST, "cascades": count, "near": near, "far": far}, reason
+
+
 def shadow_passes(
-    lamp: Any, suffix: str, facts: Facts, measured: tuple[str, dict[str, Any], str] | None, bounded: bool
+    lamp: Any,
+    suffix: str,
+    facts: Facts,
+    measured: tuple[str, dict[str, Any], str] | None,
+    bounded: bool,
+    view: Callable[[], tuple[dict[str, Any], str]],
 ) -> tuple[list[Pass], list[LeftOut]]:
-    """How the shadow of one light is found, for a light that reaches something."""
+    """How the shadow of one light is found, for a light that reaches something; `view` gives its cascades."""
     if facts.unshadowed:
         return [], [LeftOut(f"shadow{suffix}", facts.unshadowed)]
     if isinstance(lamp, light.AmbientLight):
@@ -76,6 +131,14 @@ def shadow_passes(
     if technique == "ray_traced":
         left_out.append(LeftOut(f"shadow map{suffix}", "rays need none"))
         return [Pass(f"shadow{suffix}", reason, {"technique": technique, **settings})], left_out
+    if isinstance(lamp, light.DirectionalLight):
+        parts, why = view()
+        if parts:
+            return [
+                Pass(f"shadow map{suffix}", f"what the light sees, {why}", parts),
+                Pass(f"shadow{suffix}", reason, {"technique": technique, **settings}),
+            ], left_out
+        left_out.append(LeftOut(f"cascades{suffix}", why))
     if resolution is None:
         resolution, why = resolution_for(facts), "texels no larger than pixels where the resolution allows"
     else:

@@ -34,6 +34,20 @@ def _lit(how: Pass, lamp: Any, seen: Seen, chart: Any, bvh: BVH | None) -> Float
     return np.asarray(getattr(shadow, technique)(chart, seen.points, seen.geometric, **knobs))
 
 
+def _chart(how: Pass, arrays: Any, lamp: Any, camera: Any, size: tuple[int, int], seen: Seen) -> Any:
+    """One map of a light, or cascades."""
+    settings = dict(how.settings)
+    count = settings.pop("cascades", None)
+    if count is None:
+        return shadow.shadow_map(arrays.positions, arrays.faces, lamp, **settings, receivers=seen.points)
+    forward = -np.asarray(camera.view(), np.float64)[2]
+    depths = seen.points @ forward[:3] + forward[3]
+    # A plan saw a coarser picture.
+    settings["far"] = max(settings["far"], float(depths.max(initial=0.0)) * 1.001)
+    knobs = {"count": count, "method": "logarithmic", "aspect": size[0] / size[1], **settings}
+    return shadow.cascades(arrays.positions, arrays.faces, lamp, camera, **knobs)
+
+
 class _Clock:
     """Times passes and tells the caller how far the frame is."""
 
@@ -126,7 +140,7 @@ def render(
         if kind == "bvh":
             bvh = BVH(arrays.positions, arrays.faces)
         elif kind == "shadow map":
-            chart = shadow.shadow_map(arrays.positions, arrays.faces, lamps[index], **p.settings, receivers=seen.points)
+            chart = _chart(p, arrays, lamps[index], scene.camera, chosen.size, seen)
         elif kind == "shadow":
             seeded = p.settings.get("technique") != "hard" and "seed" not in p.settings
             how = Pass(p.name, p.reason, {**p.settings, "seed": seed}) if seeded else p

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import functools
 import math
 from typing import Any, Literal
 
@@ -11,7 +12,7 @@ from .. import _arrays
 from ._facts import brightness, check_scene, checked_size, depths_before, facts_of, flat, outline, unlit
 from ._frequency import FREQUENCIES
 from ._materials import DEFAULT_ERROR, places, reflectances, shadings
-from ._shadows import picked, shadow_passes
+from ._shadows import parted, picked, seen_depths, shadow_passes
 from .passes import LeftOut, Pass, Plan, Shading
 
 __all__ = ["plan"]
@@ -60,8 +61,9 @@ def plan(
     -----
     Decided by necessity: no pass without surfaces, lights, or something that can stand between them (one plane and
     one convex body shade nothing); no map for a light that emits nothing or faces away; no penumbra for lights without
-    extent or where similar triangles bound it below a pixel. Bounds are on the safe side: a pass may be there without
-    need, never missing with need.
+    extent or where similar triangles bound it below a pixel; no cascades where the texels of one map of 2048² are at
+    most 4 pixels wide in the nearest that is seen, else as many (up to 6, of equal ratio) as bring them there. Bounds
+    are on the safe side: a pass may be there without need, never missing with need.
 
     Materials are tried, not guessed at: where a small picture shows them (128 places each), under the scene's lights
     without obstacles, cheaper models (a diffuser; metallic-roughness; metal without compensation) and cheaper ways to
@@ -116,6 +118,9 @@ def decided(
     passes.append(Pass("g-buffer", "which surface each pixel sees: everything else is done once a pixel"))
     reaching = []
     traced = False
+    arrays = scene.flatten(np.float32)
+    slope = math.tan(float(scene.camera.fov_y) / 2.0) * math.hypot(1.0, size[0] / size[1])
+    parts = functools.cache(lambda: parted(facts, seen_depths(arrays, scene.camera), slope))
     for i, lamp in enumerate(lamps):
         suffix = f" {i}" if len(lamps) > 1 else ""
         dark = unlit(lamp, facts)
@@ -123,13 +128,12 @@ def decided(
             left_out += [LeftOut(f"{n}{suffix}", dark) for n in ("shadow map", "direct light")]
             continue
         reaching.append(i)
-        more, less = shadow_passes(lamp, suffix, facts, measured, bounded)
+        more, less = shadow_passes(lamp, suffix, facts, measured, bounded, parts)
         if not traced and any(p.settings.get("technique") == "ray_traced" for p in more):
             passes.append(Pass("bvh", "shadow rays are traced in it"))
             traced = True
         passes += more
         left_out += less
-    arrays = scene.flatten(np.float32)
     chosen: tuple[Shading, ...] = ()
     where = places(arrays, scene.camera, [lamps[i] for i in reaching])
     if reaching:

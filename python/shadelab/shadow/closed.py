@@ -9,8 +9,8 @@ from .. import _arrays
 from .._arrays import Floats
 from .._kernels import shadow as _kernels
 from ..light import DiskLight, PolygonLight, RectLight
+from ._fit import _frame_along, _unit
 from ._lookup import _points, _result
-from .maps import _frame_along, _unit
 
 __all__ = ["half_plane"]
 

@@ -100,7 +100,7 @@ def cube_shadow_map(
     >>> room = box((4.0, 4, 4))
     >>> around = cube_shadow_map(room.positions, room.faces, PointLight((0, 0, 0)), 64)
     >>> around.index([[1.9, 0, 0], [0, -1.9, 0]]), hard(around, [[1.9, 0, 0], [0, -3, 0]], [0, 1, 0])
-    (array([0, 3]), array([1., 0.], dtype=float32))
+    (array([0, 3]), array([1., 0.]))
     """
     points, triangles = _casters(positions, faces)
     side = _arrays.count("resolution", resolution, 1, 16384)
