@@ -37,8 +37,8 @@ def cost(technique: str, *, itemsize: int = 4, **knobs: Any) -> Cost:
     itemsize : int
         Bytes of a number in a texel.
     **knobs
-        The function's own arguments, and those of `moment_map` (`kind`, `filter`, `bits`, `exponents`); those that do
-        not matter to the cost are ignored.
+        The function's own arguments, and those of `moment_map` (`kind`, `filter`, `bits`, `exponents`) or of
+        `shadow_map` (`bits`); those that do not matter to the cost are ignored.
 
     Returns
     -------
@@ -55,6 +55,8 @@ def cost(technique: str, *, itemsize: int = 4, **knobs: Any) -> Cost:
     Cost(texel_reads=48, rays=0, bytes=192)
     >>> cost("moment", filter="mip", bits=16)
     Cost(texel_reads=8, rays=0, bytes=64)
+    >>> cost("pcf", samples=16, bits=16)
+    Cost(texel_reads=16, rays=0, bytes=32)
     """
     _arrays.choice("technique", technique, (*_COMPARED, *_FILTERED))
     if technique == "ray_traced":
@@ -70,7 +72,9 @@ def cost(technique: str, *, itemsize: int = 4, **knobs: Any) -> Cost:
         reads = int(knobs.get("samples", 16)) * (4 if knobs.get("bilinear") else 1)
     else:
         reads = int(knobs.get("blocker_samples", 16)) + int(knobs.get("filter_samples", 32))
-    return Cost(reads, 0, reads * itemsize)
+    # Stored depths: 24 bits lie in 32.
+    size = {16: 2, 24: 4, 32: 4}.get(knobs.get("bits", 0), itemsize)
+    return Cost(reads, 0, reads * size)
 
 
 def _of_moments(technique: str, itemsize: int, knobs: dict[str, Any]) -> Cost:
