@@ -12,7 +12,7 @@ from numpy.typing import ArrayLike, NDArray
 from .. import _arrays
 from .._arrays import Floats
 from ._sets import MapSet
-from .maps import ShadowMap
+from .maps import ShadowMap, _sides
 
 Kernel: TypeAlias = Literal["vogel", "box", "grid", "tent", "poisson"]
 _KERNELS = ("vogel", "box", "grid", "tent", "poisson")
@@ -34,6 +34,18 @@ def _granted(
         _arrays.number("normal_offset", normal_offset, 0.0),
         _arrays.flag("receiver_plane", receiver_plane) and normals is not None,
     )
+
+
+def _light_sides(maps: ShadowMap | MapSet, light_size: float | tuple[float, float] | None) -> tuple[float, float]:
+    """The light's width along the map's right and up; for an orthographic map at a distance of 1."""
+    sides = maps.light_size if light_size is None else _sides("light_size", light_size)
+    if light_size is None and max(sides) == 0.0:
+        raise ValueError("light_size: the map's light has no extent, so its width must be given")
+    if maps.projection != "orthographic":
+        return sides
+    if max(sides) >= math.pi:
+        raise ValueError(f"light_size: expected an angle below pi, got {max(sides):g}")
+    return 2.0 * math.tan(sides[0] / 2.0), 2.0 * math.tan(sides[1] / 2.0)
 
 
 def _receivers(

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import math
 from typing import Literal, overload
 
 import numpy as np
@@ -11,10 +10,9 @@ from numpy.typing import ArrayLike
 from .. import _arrays
 from .._arrays import Floats
 from .._kernels import shadow as _kernels
-from ._lookup import _receivers, _result
+from ._lookup import _light_sides, _receivers, _result
 from .bounds import Method
 from .filtered import _LEAST, _asked, _bias
-from .maps import _sides
 from .moments import MomentMap
 from .soft import PCSS
 
@@ -139,14 +137,7 @@ def variance_soft(
     if m.kind == "exponential_variance":
         raise ValueError("moment_map: expected kind 'variance' or 'moment', got 'exponential_variance'")
     shadow_map = m.shadow_map
-    sides = shadow_map.light_size if light_size is None else _sides("light_size", light_size)
-    if light_size is None and max(sides) == 0.0:
-        raise ValueError("light_size: the map's light has no extent, so its width must be given")
-    perspective = shadow_map.projection == "perspective"
-    if not perspective:
-        if max(sides) >= math.pi:
-            raise ValueError(f"light_size: expected an angle below pi, got {max(sides):g}")
-        sides = 2.0 * math.tan(sides[0] / 2.0), 2.0 * math.tan(sides[1] / 2.0)
+    sides, perspective = _light_sides(shadow_map, light_size), shadow_map.projection == "perspective"
     asked = _asked(m, min_variance, method, moment_bias)
     searched = _arrays.number("search_slope_bias", search_slope_bias, 0.0)
     granted = _bias(m, bias, slope_bias, normal_offset, light_bleeding)

@@ -11,9 +11,9 @@ from numpy.typing import ArrayLike
 from .. import _arrays
 from .._arrays import Floats
 from .._kernels import shadow as _kernels
-from ._lookup import Kernel, _granted, _looked_up, _maps, _receivers, _result, _taps
+from ._lookup import Kernel, _granted, _light_sides, _looked_up, _maps, _receivers, _result, _taps
 from ._sets import MapSet
-from .maps import ShadowMap, _sides
+from .maps import ShadowMap
 
 __all__ = ["PCSS", "pcss"]
 
@@ -155,13 +155,7 @@ def pcss(
     """
     maps = _maps(shadow_map)
     granted = _granted(normals, bias, slope_bias, normal_offset, receiver_plane)
-    sides = maps.light_size if light_size is None else _sides("light_size", light_size)
-    if light_size is None and max(sides) == 0.0:
-        raise ValueError("light_size: the map's light has no extent, so its width must be given")
-    if maps.projection == "orthographic":
-        if max(sides) >= math.pi:
-            raise ValueError(f"light_size: expected an angle below pi, got {max(sides):g}")
-        sides = 2.0 * math.tan(sides[0] / 2.0), 2.0 * math.tan(sides[1] / 2.0)
+    sides = _light_sides(maps, light_size)
     if kernel is None:
         kernel = "box" if max(maps.light_size) > 0.0 else "vogel"
     frustum = _arrays.choice("search", search, ("region", "frustum")) == "frustum"
