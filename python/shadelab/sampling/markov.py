@@ -1,4 +1,4 @@
-"""Markov chains: Metropolis' and Gibbs' samplers with their diagnostics, and finite chains."""
+"""Markov chains: Metropolis' and Gibbs' samplers."""
 
 from __future__ import annotations
 
@@ -11,22 +11,15 @@ from numpy.typing import ArrayLike, NDArray
 from .. import _arrays
 from .._arrays import Floats
 from .._kernels import sampling as _kernels
+from .diagnostics import effective_sample_size, r_hat
 from .generators import Generator
 from .tabulated import Tabulated2D
 
-__all__ = [
-    "Balance",
-    "Chains",
-    "detailed_balance",
-    "effective_sample_size",
-    "gibbs",
-    "metropolis_hastings",
-    "r_hat",
-    "stationary_distribution",
-]
+__all__ = ["Chains", "gibbs", "metropolis_hastings"]
 
 LogDensity: TypeAlias = Callable[[Floats], ArrayLike]
 """From states (chains, d) to the logarithm of a density, up to a constant, (chains,)."""
+
 
 Acceptance: TypeAlias = Literal["hastings", "metropolis", "plain"]
 
@@ -44,111 +37,6 @@ class Chains(NamedTuple):
     """How many independent samples tell as much, for each dimension; all chains together."""
     r_hat: NDArray[np.float64]
     """How far chains disagree, for each dimension: 1 where they are alike, above 1.01 run them longer."""
-
-
-def effective_sample_size(samples: ArrayLike) -> NDArray[np.float64]:
-    """How many independent samples tell as much about the mean as those of correlated chains.
-
-    Parameters
-    ----------
-    samples : array_like, shape (chains, n, ...)
-        Of at least one chain and four steps.
-
-    Returns
-    -------
-    ndarray of float64, shape (...)
-        `chains * n` over the sum of autocorrelations; NaN where all samples are one number.
-
-    Raises
-    ------
-    TypeError, ValueError
-        If `samples` is not real, or of fewer steps.
-
-    Notes
-    -----
-    Autocorrelations of all chains are pooled and summed in pairs while these stay positive and decrease (Geyer). Chains
-    that disagree count for less. Chains that drift back and forth can count for more than their length.
-
-    References
-    ----------
-    C. J. Geyer, *Practical Markov chain Monte Carlo*, 1992.
-    A. Vehtari, A. Gelman, D. Simpson, B. Carpenter, P.-C. Bürkner, *Rank-normalization, folding, and localization: an
-    improved R-hat for assessing convergence of MCMC*, 2021.
-
-    Examples
-    --------
-    >>> x = Generator(1).uniform(np.arange(4)[:, None], np.arange(1000))
-    >>> bool(3000 < effective_sample_size(x) < 5000)
-    True
-    """
-    x = _chains(samples)
-    m, n = x.shape[:2]
-    centered = x - x.mean(1, keepdims=True)
-    # Autocovariances by Fourier's transform, padded so that ends do not meet.
-    size = 1 << (2 * n - 1).bit_length()
-    spectrum = np.fft.rfft(centered, size, axis=1)
-    covariance = np.fft.irfft(np.abs(spectrum) ** 2, size, axis=1)[:, :n].mean(0) / n
-    within = covariance[0] * n / (n - 1)
-    total = covariance[0] + (x.mean(1).var(0, ddof=1) if m > 1 else 0.0)
-    with np.errstate(divide="ignore", invalid="ignore"):
-        rho = 1 - (within - covariance * n / (n - 1)) / total
-    rho[0] = 1
-    pairs = rho[: n // 2 * 2].reshape(n // 2, 2, *x.shape[2:]).sum(1)
-    positive = np.logical_and.accumulate(pairs > 0, axis=0)
-    summed = np.where(positive, np.minimum.accumulate(pairs, axis=0), 0).sum(0)
-    with np.errstate(divide="ignore", invalid="ignore"):
-        # Chains that alternate could seem worth infinitely much.
-        tau = np.maximum(2 * summed - 1, 1 / np.log10(max(m * n, 10)))
-        return np.asarray(np.where(total > 0, m * n / tau, np.nan))
-
-
-def r_hat(samples: ArrayLike) -> NDArray[np.float64]:
-    """How far chains disagree: the spread of all samples over that within chains, each chain split in two.
-
-    Parameters
-    ----------
-    samples : array_like, shape (chains, n, ...)
-        Of at least one chain and four steps.
-
-    Returns
-    -------
-    ndarray of float64, shape (...)
-        1 where chains are alike; NaN where all samples are one number, infinite where chains stand still apart.
-
-    Raises
-    ------
-    TypeError, ValueError
-        If `samples` is not real, or of fewer steps.
-
-    Notes
-    -----
-    It cannot see what no chain has visited.
-
-    References
-    ----------
-    A. Gelman, D. B. Rubin, *Inference from iterative simulation using multiple sequences*, 1992; split as in A. Gelman
-    and others, *Bayesian Data Analysis*, 2013, section 11.4.
-
-    Examples
-    --------
-    >>> x = Generator(1).uniform(np.arange(4)[:, None], np.arange(1000))
-    >>> bool(r_hat(x) < 1.01), bool(r_hat(x + np.arange(4)[:, None]) > 2)
-    (True, True)
-    """
-    x = _chains(samples)
-    half = x.shape[1] // 2
-    parts = np.concatenate([x[:, :half], x[:, -half:]])
-    within = parts.var(1, ddof=1).mean(0)
-    between = parts.mean(1).var(0, ddof=1)
-    with np.errstate(divide="ignore", invalid="ignore"):
-        return np.asarray(np.sqrt((half - 1) / half + between / within))
-
-
-def _chains(samples: ArrayLike) -> NDArray[np.float64]:
-    x = np.asarray(_arrays.floats("samples", samples), np.float64)
-    if x.ndim < 2 or x.shape[0] < 1 or x.shape[1] < 4:
-        raise ValueError(f"samples: expected shape (chains, n, ...) with n of at least 4, got {x.shape}")
-    return x
 
 
 def _result(samples: Floats, acceptance: NDArray[np.float64], burn_in: int) -> Chains:
@@ -450,121 +338,3 @@ def gibbs(
     callback = _arrays.progress_callback(progress, "gibbs")
     _kernels.gibbs(tables, (seed, burn_in, thin), state, samples, callback)
     return _result(samples, np.ones(chains), burn_in)
-
-
-def _transition(matrix: ArrayLike) -> NDArray[np.float64]:
-    p = np.asarray(_arrays.floats("matrix", matrix), np.float64)
-    if p.ndim != 2 or p.shape[0] != p.shape[1] or not p.size:
-        raise ValueError(f"matrix: expected shape (n, n), got {p.shape}")
-    if not (p >= 0).all() or not np.allclose(p.sum(1), 1, atol=1e-6):
-        raise ValueError("matrix: expected probabilities whose rows sum to one")
-    return p
-
-
-def stationary_distribution(matrix: ArrayLike) -> NDArray[np.float64]:
-    """The distribution that a finite chain leaves as it is: π P = π.
-
-    Parameters
-    ----------
-    matrix : array_like, shape (n, n)
-        Row i holds the probabilities of going from i to each state.
-
-    Returns
-    -------
-    ndarray of float64, shape (n,)
-        Sums to one.
-
-    Raises
-    ------
-    TypeError, ValueError
-        If `matrix` is no matrix of such rows, or states fall into groups that never meet (the answer is not unique).
-
-    Notes
-    -----
-    States are eliminated one by one without a subtraction (Grassmann, Taksar, Heyman), so each probability keeps nearly
-    all its digits, however small it is; in double, n³ / 3 steps. States that are left for good have none.
-
-    References
-    ----------
-    W. K. Grassmann, M. I. Taksar, D. P. Heyman, *Regenerative analysis and steady state distributions for Markov
-    chains*, 1985.
-
-    Examples
-    --------
-    >>> stationary_distribution([[0.9, 0.1], [0.3, 0.7]])
-    array([0.75, 0.25])
-    """
-    p = _transition(matrix)
-    n = len(p)
-    reach = (p > 0) | np.eye(n, dtype=bool)
-    for _ in range(max(n - 1, 1).bit_length()):
-        reach = reach.astype(np.float64) @ reach.astype(np.float64) > 0
-    # States that all others lead to: the one group in which a chain ends.
-    final = reach.all(0)
-    if not final.any():
-        raise ValueError("matrix: expected one group of states that chains end in, got several")
-    a = p[np.ix_(final, final)].copy()
-    for k in range(len(a) - 1, 0, -1):
-        a[:k, k] /= a[k, :k].sum()
-        a[:k, :k] += np.outer(a[:k, k], a[k, :k])
-    weight = np.ones(len(a))
-    for k in range(1, len(a)):
-        weight[k] = weight[:k] @ a[:k, k]
-    out = np.zeros(n)
-    out[final] = weight / weight.sum()
-    return out
-
-
-class Balance(NamedTuple):
-    """The flows between states under a distribution."""
-
-    holds: bool
-    """Whether every flow equals the one back, to 1e-10 of the largest."""
-    violation: float
-    """The largest difference of a flow and the one back."""
-    flows: NDArray[np.float64]
-    """π_i P_ij: what goes from i to j in a step."""
-
-
-def detailed_balance(matrix: ArrayLike, distribution: ArrayLike | None = None) -> Balance:
-    """Whether a finite chain is reversible: π_i P_ij = π_j P_ji for every pair.
-
-    Parameters
-    ----------
-    matrix : array_like, shape (n, n)
-        Row i holds the probabilities of going from i to each state.
-    distribution : array_like, shape (n,), optional
-        π; by default the stationary one.
-
-    Returns
-    -------
-    Balance
-        Whether it holds, the largest violation, and all flows.
-
-    Raises
-    ------
-    TypeError, ValueError
-        If an argument is of other shape, or no probabilities.
-
-    Notes
-    -----
-    Detailed balance makes π stationary; the converse is false: a chain that turns in circles has a stationary
-    distribution too.
-
-    Examples
-    --------
-    >>> detailed_balance([[0.9, 0.1], [0.3, 0.7]]).holds
-    True
-    >>> detailed_balance([[0, 1, 0], [0, 0, 1], [1, 0, 0]]).holds
-    False
-    """
-    p = _transition(matrix)
-    if distribution is None:
-        pi = stationary_distribution(p)
-    else:
-        pi = np.asarray(_arrays.floats("distribution", distribution), np.float64)
-        if pi.shape != (len(p),) or not (pi >= 0).all() or abs(pi.sum() - 1) > 1e-6:
-            raise ValueError(f"distribution: expected {len(p)} probabilities that sum to one, got shape {pi.shape}")
-    flows = pi[:, None] * p
-    violation = float(np.abs(flows - flows.T).max())
-    return Balance(violation <= 1e-10 * float(flows.max()), violation, flows)

@@ -1,29 +1,20 @@
-"""Monte Carlo integration with its error bar, the weights that combine techniques, and roulette."""
+"""Monte Carlo integration with its error bar."""
 
 from __future__ import annotations
 
 import math
 from collections.abc import Callable, Sequence
-from typing import Any, Literal, NamedTuple, TypeAlias
+from typing import Literal, NamedTuple, TypeAlias
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from .. import _arrays
-from .._arrays import Floats
 from .generators import Generator
+from .heuristics import power_heuristic
 from .sequences import sobol
 
-__all__ = [
-    "Estimate",
-    "Split",
-    "Technique",
-    "balance_heuristic",
-    "integrate",
-    "power_heuristic",
-    "russian_roulette",
-    "split_integral",
-]
+__all__ = ["Estimate", "Technique", "integrate"]
 
 Function: TypeAlias = Callable[[NDArray[np.float64]], ArrayLike]
 """From points (n, d) to values (n,)."""
@@ -169,6 +160,8 @@ _METHODS = {
     "control_variate": _control,
     "roulette": _roulette,
 }
+
+
 _REPLICATES = 16
 
 
@@ -297,251 +290,3 @@ def _problem(
     if not callable(survival):
         survival = _arrays.number("survival", survival, high=1, above=0)
     return _Problem(f, a, b - a, several, 1.0 if heuristic == "balance" else 2.0, control, survival)
-
-
-def balance_heuristic(pdfs: ArrayLike, counts: ArrayLike | None = None) -> Floats:
-    """The weights of several techniques for a point, in proportion to how often each draws it.
-
-    Parameters
-    ----------
-    pdfs : array_like, shape (..., k)
-        The density of each technique at a point, by one measure.
-    counts : array_like, shape (k,), optional
-        How many samples each takes; by default alike.
-
-    Returns
-    -------
-    ndarray, shape (..., k)
-        n_i p_i / Σ n_j p_j: they sum to one; all are 0 where no technique reaches.
-
-    Raises
-    ------
-    TypeError, ValueError
-        If `pdfs` is not real, or `counts` of other shape.
-
-    Notes
-    -----
-    Right to 4 rounding units whatever the size of densities, infinite ones included (a mirror's): these share all the
-    weight. No other weights sum to much less variance.
-
-    References
-    ----------
-    E. Veach, L. Guibas, *Optimally combining sampling techniques for Monte Carlo rendering*, 1995.
-
-    Examples
-    --------
-    >>> balance_heuristic([1.0, 3.0])
-    array([0.25, 0.75])
-    """
-    return power_heuristic(pdfs, counts, power=1.0)
-
-
-def power_heuristic(pdfs: ArrayLike, counts: ArrayLike | None = None, *, power: float = 2.0) -> Floats:
-    """As `balance_heuristic`, of powers: sharper, better where one of the techniques is nearly perfect.
-
-    Parameters
-    ----------
-    pdfs : array_like, shape (..., k)
-        The density of each technique at a point, by one measure.
-    counts : array_like, shape (k,), optional
-        How many samples each takes; by default alike.
-    power : float
-        At least 1; infinite is the maximum heuristic.
-
-    Returns
-    -------
-    ndarray, shape (..., k)
-        (n_i p_i)^power / Σ (n_j p_j)^power; all are 0 where no technique reaches.
-
-    Raises
-    ------
-    TypeError, ValueError
-        If `pdfs` is not real, `counts` of other shape, or `power` below 1.
-
-    Notes
-    -----
-    Ratios to the largest are taken before the power, so nothing overflows.
-
-    References
-    ----------
-    E. Veach, L. Guibas, *Optimally combining sampling techniques for Monte Carlo rendering*, 1995.
-
-    Examples
-    --------
-    >>> power_heuristic([1.0, 3.0])
-    array([0.1, 0.9])
-    """
-    p = _arrays.floats("pdfs", pdfs)
-    if p.ndim == 0:
-        raise ValueError(f"pdfs: expected shape (..., k), got {p.shape}")
-    power = float(power)
-    if not power >= 1:
-        raise ValueError(f"power: expected a number of at least 1, got {power:g}")
-    n = np.ones(p.shape[-1], p.dtype) if counts is None else _arrays.floats("counts", counts, p.dtype)
-    if n.shape != p.shape[-1:] or not ((n >= 0) & np.isfinite(n)).all():
-        raise ValueError(f"counts: expected {p.shape[-1]} numbers of at least 0, got shape {n.shape}")
-    with np.errstate(invalid="ignore", divide="ignore", under="ignore"):
-        # Each beside the largest, before the counts could overflow.
-        largest = p.max(-1, keepdims=True)
-        share = np.where(np.isinf(largest), np.isinf(p), p / largest) * (n / max(float(n.max()), 1e-30))
-        share = np.where(largest > 0, share, largest * 0).astype(p.dtype)
-        top = share.max(-1, keepdims=True)
-        ratio = np.where(top > 0, share / np.where(top > 0, top, 1), top)
-        ratio = np.where(ratio < 1, 0, ratio) if math.isinf(power) else ratio ** p.dtype.type(power)
-        total = ratio.sum(-1, keepdims=True)
-        return np.asarray(np.where(total > 0, ratio / np.where(total > 0, total, 1), total * ratio), p.dtype)
-
-
-def russian_roulette(values: ArrayLike, survival: ArrayLike, u: ArrayLike, fallback: ArrayLike = 0.0) -> Floats:
-    """Values that live on with a probability, weighted so that the mean stays.
-
-    Parameters
-    ----------
-    values : array_like, shape (...)
-        What survivors are worth.
-    survival : array_like, shape (...)
-        The probability to survive, in (0, 1]; where it is 0 all die. Others give NaN.
-    u : array_like, shape (...)
-        Uniform numbers in [0, 1): those below `survival` survive. All broadcast.
-    fallback : array_like, shape (...)
-        What the dead are worth.
-
-    Returns
-    -------
-    ndarray, shape (...)
-        (value - (1 - q) fallback) / q for survivors, else the fallback. Its mean over `u` is the value.
-
-    Raises
-    ------
-    TypeError, ValueError
-        If an argument is not real, or shapes do not broadcast.
-
-    Notes
-    -----
-    Saves work, never variance: the variance grows by (1/q - 1) (value - fallback)². A survival of 0 where the value is
-    not the fallback's is a bias.
-
-    References
-    ----------
-    J. Arvo, D. Kirk, *Particle transport and image synthesis*, 1990.
-
-    Examples
-    --------
-    >>> russian_roulette([1.0, 1.0], 0.5, [0.3, 0.8])
-    array([2., 0.])
-    """
-    dtype = _arrays.result_dtype(values=values)
-    v, q, x, c = (
-        _arrays.floats(k, a, dtype)
-        for k, a in (("values", values), ("survival", survival), ("u", u), ("fallback", fallback))
-    )
-    core = {"values": (v, 0), "survival": (q, 0), "u": (x, 0), "fallback": (c, 0)}
-    shape, (v, q, x, c) = _arrays.broadcast(core)
-    with np.errstate(divide="ignore", invalid="ignore"):
-        out = np.where(x < q, (v - (1 - q) * c) / q, c)
-        out = np.where((q >= 0) & (q <= 1) & (x >= 0) & (x <= 1), out, np.nan)
-    return np.asarray(out, dtype).reshape(shape)
-
-
-class Split(NamedTuple):
-    """The product approximation of ∫ f g and what it misses."""
-
-    product: Any
-    """Mean of f on g's support, times ∫ g."""
-    integral: Any
-    """∫ f g itself, by quadrature."""
-    error: Any
-    """`product - integral`."""
-    mean_f: Any
-    integral_g: Any
-    bound: Any
-    """|error| is at most this: the support's size times both standard deviations on it."""
-
-
-def split_integral(
-    f: Function | ArrayLike,
-    g: Function | ArrayLike,
-    *,
-    low: ArrayLike = 0.0,
-    high: ArrayLike = 1.0,
-    nodes: int = 256,
-    weights: ArrayLike | None = None,
-) -> Split:
-    """∫ f g ≈ (mean of f on g's support) × ∫ g: what shadow maps, ambient occlusion and split sums rest on.
-
-    Parameters
-    ----------
-    f, g : callables, or array_like of shape (..., n)
-        From points (n, d) to values (n,); or values at the nodes of a quadrature of one's own.
-    low, high : array_like, shape () or (d,)
-        The box, for callables.
-    nodes : int
-        Along each axis, for callables: composite Gauss-Legendre quadrature of 4 nodes a panel.
-    weights : array_like, shape (n,), optional
-        The quadrature's weights, for arrays; by default 1/n each: means.
-
-    Returns
-    -------
-    Split
-        The product, the integral, the error, its factors and its bound.
-
-    Raises
-    ------
-    TypeError, ValueError
-        If an argument is out of its domain, or only one of `f` and `g` is callable.
-
-    Notes
-    -----
-    The error is minus the support's size times the covariance of f and g on it: none where either is constant there, or
-    where they are unrelated. So the approximation is good where g's support is small (a point light) or f is smooth
-    (a diffuse surface under even light). Where f or g jumps, the quadrature itself errs by about a panel.
-
-    References
-    ----------
-    T. Akenine-Möller and others, *Real-Time Rendering*, 2018, section 7.
-    B. Karis, *Real Shading in Unreal Engine 4*, 2013 (the split sum).
-
-    Examples
-    --------
-    >>> found = split_integral(lambda x: x[:, 0], lambda x: 1 + x[:, 0])
-    >>> round(found.product, 6), round(found.integral, 6), round(found.error, 6)
-    (0.75, 0.833333, -0.083333)
-    """
-    if callable(f) != callable(g):
-        raise TypeError("f, g: expected two callables or two arrays, got one of each")
-    if callable(f) and callable(g):
-        nodes = _arrays.count("nodes", nodes, 4, 4096)
-        p = _problem(f, low, high, "plain", (), "balance", None, 0.5)
-        points, w = _grid(nodes // 4, len(p.low))
-        points, w = p.low + points * p.extent, w * float(np.prod(p.extent))
-        fs, gs = _values("f", f, points), _values("g", g, points)
-    else:
-        fs, gs = (np.asarray(_arrays.floats(k, v), np.float64) for k, v in (("f", f), ("g", g)))  # type: ignore[arg-type]
-        if fs.ndim == 0 or gs.ndim == 0 or fs.shape[-1] != gs.shape[-1]:
-            raise ValueError(f"f, g: expected values at the same nodes, got shapes {fs.shape} and {gs.shape}")
-        n = fs.shape[-1]
-        w = np.full(n, 1 / n) if weights is None else np.asarray(_arrays.floats("weights", weights), np.float64)
-        if w.shape != (n,):
-            raise ValueError(f"weights: expected shape ({n},), got {w.shape}")
-    inside = gs != 0
-    with np.errstate(invalid="ignore", divide="ignore"):
-        size = (w * inside).sum(-1)
-        mean_f = np.where(size > 0, (w * inside * fs).sum(-1) / size, 0.0)
-        integral_g = (w * gs).sum(-1)
-        mean_g = np.where(size > 0, integral_g / size, 0.0)
-        spread = [(w * inside * (x - m[..., None]) ** 2).sum(-1) for x, m in ((fs, mean_f), (gs, mean_g))]
-    integral, product = (w * fs * gs).sum(-1), mean_f * integral_g
-    bound = np.sqrt(np.maximum(spread[0], 0) * np.maximum(spread[1], 0))
-    found = (product, integral, product - integral, mean_f, integral_g, bound)
-    return Split(*(float(x) if np.ndim(x) == 0 else x for x in found))
-
-
-def _grid(panels: int, d: int) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
-    """Nodes and weights of the unit cube."""
-    if (4 * panels) ** d > 1 << 24:
-        raise ValueError(f"nodes: expected at most {int((1 << 24) ** (1 / d))} along each of {d} axes")
-    x, w = np.polynomial.legendre.leggauss(4)
-    x = ((np.arange(panels)[:, None] + (x + 1) / 2) / panels).ravel()
-    w = np.tile(w / 2 / panels, panels)
-    points = np.stack(np.meshgrid(*[x] * d, indexing="ij"), -1).reshape(-1, d)
-    return points, np.asarray(np.prod(np.meshgrid(*[w] * d, indexing="ij"), axis=0)).ravel()
