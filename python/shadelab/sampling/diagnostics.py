@@ -6,6 +6,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from .. import _arrays
+from .generators import Generator  # noqa: F401 (examples)
 
 __all__ = ["effective_sample_size", "r_hat"]
 
