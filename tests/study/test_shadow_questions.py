@@ -12,6 +12,9 @@ SIZE = (96, 54)
 FAST = {"size": SIZE, "rounds": 3, "patience": 0.0, "cache": False}
 
 
+_FEW = ("hard", "pcss", "pcss, 16 bits", "moments as mips, 16 bits", "distance_field")
+
+
 def by_setting(result, technique, case=None):
     return {
         tuple(r.knobs.values()): r
@@ -61,15 +64,22 @@ def test_bias_trades_acne_for_detachment():
     # The tangent plane needs no size: next to no acne, and shadows stay.
     best = plane[(1024, 0.05)]
     assert best.also["acne %"] < 3 and best.error.value < 0.5 * bare.error.value
+    # The middle of a thing that has two sides is far from both.
+    (middle,) = by_setting(result, "midpoint").values()
+    assert middle.also["acne %"] < 0.3 * bare.also["acne %"] and middle.error.value < bare.error.value
 
 
 def test_memory_is_the_price_and_time_a_counter(tmp_path):
     question = shadow_memory.question()
-    few = [c for c in question.candidates if c.name in ("hard", "pcss", "moments as mips, 16 bits", "distance_field")]
+    few = [c for c in question.candidates if c.name in _FEW]
     result = study.run(study.Question(**{**vars(question), "candidates": few}), "large penumbra", **FAST)
     hard = by_setting(result, "hard")
     assert [hard[(n,)].ms.value for n in (128, 2048)] == [4 * 128**2, 4 * 2048**2]
     assert hard[(128,)].counters["ms"] > 0 and "bytes" not in hard[(128,)].counters
+    whole, half = by_setting(result, "pcss"), by_setting(result, "pcss, 16 bits")
+    assert half[(512, 16, 16, 32)].ms.value == 2 * 512**2
+    # Depths are quantised far below what 32 taps leave as noise.
+    assert abs(half[(512, 16, 16, 32)].error.value - whole[(512, 16, 32)].error.value) < 0.02
     # Depths, four powers of 16 bits, a third for mips.
     mips = by_setting(result, "moments as mips, 16 bits")
     assert mips[(256, "moment", "mip", 16)].ms.value == 4 * 256**2 + round(256**2 * 8 * 4 / 3)

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import math
 from typing import Any
 
 import numpy as np
@@ -21,7 +20,7 @@ _RESOLUTION = 1024
 
 
 def _lookup(**fixed: Any) -> Any:
-    def run(inputs: Inputs, maps: list[Any], resolution: int, **knobs: float) -> Array:
+    def run(inputs: Inputs, maps: list[Any], resolution: int, surface: str = "first", **knobs: float) -> Array:
         return np.stack([shadow.hard(m, inputs.points, inputs.geometric, **(fixed | knobs)) for m in maps])
 
     return run
@@ -33,14 +32,14 @@ def _residual(value: Array, reference: Array, inputs: Inputs) -> Array:
 
 def _acne(value: Array, reference: Array, inputs: Inputs) -> float:
     """Share of the lit pixels that are darkened, in per cent."""
-    lit = facing(inputs) & (reference == 1)
-    return 100.0 * float((value[lit] < 1).mean()) if lit.any() else math.nan
+    seen = facing(inputs)
+    return 100.0 * shadow.acne(value[seen], reference[seen])
 
 
 def _detached(value: Array, reference: Array, inputs: Inputs) -> float:
     """Share of the shadowed pixels that are lit, in per cent."""
-    dark = facing(inputs) & (reference == 0)
-    return 100.0 * float((value[dark] > 0).mean()) if dark.any() else math.nan
+    seen = facing(inputs)
+    return 100.0 * shadow.detached(value[seen], reference[seen])
 
 
 _ABOUT = """A surface that a map has sampled at texels shadows itself between them: acne. What is granted to a receiver
@@ -93,6 +92,20 @@ def question() -> Question:
                 "Compared with the receiver's tangent plane at the texel's centre: exact where it is flat, so that "
                 "hardly any slope bias is needed.",
                 receiver_plane=True,
+            ),
+            _candidate(
+                "second depth",
+                {"surface": ("second",)},
+                "The map holds what lies behind the nearest surface: acne moves to what faces away from the light, and "
+                "light leaks under what has no back.",
+                **_NONE,
+            ),
+            _candidate(
+                "midpoint",
+                {"surface": ("midpoint",)},
+                "The map holds the middle between the nearest surface and the next: as far from both as can be, but at "
+                "silhouettes, where they meet.",
+                **_NONE,
             ),
         ],
         Mask("all that faces the light", lambda reference, inputs: facing(inputs), "", "nothing faces the light"),

@@ -94,6 +94,10 @@ def _stored(name: str, title: str, about: str, **fixed: Any) -> Candidate:
     return Candidate(title, _filtered(name), knobs, _moment_maps(name), _counters(name), _area_light, about=about)
 
 
+def _stored_pcss(inputs: Inputs, maps: list[Any], resolution: int, stored_bits: int, **knobs: int) -> Array:
+    return _pcss(inputs, maps, resolution, **knobs)
+
+
 def question() -> Question:
     """The question, ready to be run."""
     return Question(
@@ -119,6 +123,16 @@ def question() -> Question:
                 _area_light,
                 True,
                 "Four bytes a texel; the filter is as wide as blockers ask for, and its noise is that of 32 taps.",
+            ),
+            Candidate(
+                "pcss, 16 bits",
+                _stored_pcss,
+                {"resolution": _RESOLUTIONS, "stored_bits": (16,), "blocker_samples": (16,), "filter_samples": (32,)},
+                _maps,
+                _counters("pcss"),
+                _area_light,
+                True,
+                "The same on depths in 16 bits: two bytes a texel.",
             ),
             _stored(
                 "variance_soft",

@@ -171,11 +171,11 @@ def _widened(mask: Array, reach: int) -> Array:
     return mask
 
 
-def _maps(inputs: Inputs, resolution: int, **knobs: Any) -> list[Any]:
+def _maps(inputs: Inputs, resolution: int, surface: Any = "first", stored_bits: Any = None, **knobs: Any) -> list[Any]:
     """The shadow map of each light, drawn each frame."""
+    how: dict[str, Any] = {"receivers": inputs.points, "surface": surface, "bits": stored_bits}
     return [
-        shadow.shadow_map(inputs.caster_positions, inputs.caster_faces, l, resolution, receivers=inputs.points)
-        for l in inputs.lights
+        shadow.shadow_map(inputs.caster_positions, inputs.caster_faces, l, resolution, **how) for l in inputs.lights
     ]
 
 
@@ -226,10 +226,13 @@ def _rays(inputs: Inputs, source: Any, samples: int, seed: int) -> Array:
 def _counters(technique: str) -> Any:
     """Texel reads and rays a pixel, and the bytes that stay resident: the maps, or the tree."""
 
-    def count(inputs: Inputs, resolution: int = 0, **knobs: Any) -> dict[str, float]:
+    def count(
+        inputs: Inputs, resolution: int = 0, surface: str = "first", stored_bits: int | None = None, **knobs: Any
+    ) -> dict[str, float]:
         cost = shadow.cost(technique, itemsize=inputs.points.itemsize, **knobs)
         lights = len(inputs.lights)
-        resident = lights * resolution**2 * inputs.points.itemsize if resolution else inputs.bvh.stats().bytes
+        texel = {None: inputs.points.itemsize, 16: 2}.get(stored_bits, 4)
+        resident = lights * resolution**2 * texel if resolution else inputs.bvh.stats().bytes
         if technique in _MOMENTS:
             channels = 2 if knobs.get("kind", technique) == "variance" else 4
             size = (
