@@ -134,12 +134,12 @@ def pcss(
     3. Percentage-closer filtering over w.
 
     Exact, up to noise and texels, for one flat blocker parallel to the light and a receiver of any slope near the
-    light's axis; under a rectangular light with kernel "box" also in profile. Fails where blockers at several depths
-    overlap: they count as one at their mean depth, so shadows of the nearer are too sharp and light may leak. What the
-    light's centre does not see cannot block. A few blocker samples miss thin blockers. What lies outside a map does not
-    block: where one of several (cascades, cubes, pages) ends within the search or the filter, shadows grow too light, so
-    give them borders as wide as the widest penumbra. Cost: `blocker_samples` texel reads, and `filter_samples` more
-    where something blocks (one more where the search found nothing).
+    light's axis; under a rectangular light with kernel "box" also in profile. Fails where blockers at several
+    depths overlap: they count as one at their mean depth, so shadows of the nearer are too sharp and light may
+    leak. What the light's centre does not see cannot block. A few blocker samples miss thin blockers. What lies
+    outside a map does not block: where one of several (cascades, cubes, pages) ends within the search or the
+    filter, shadows grow too light, so give them borders as wide as the widest penumbra. Cost: `blocker_samples`
+    texel reads, and `filter_samples` more where something blocks (one more where the search found nothing).
 
     References
     ----------
