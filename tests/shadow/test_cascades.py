@@ -214,6 +214,11 @@ def test_errors_name_the_argument():
         ({"blend": 1.0}, ValueError, "blend"),
         ({"count": 33}, ValueError, "count"),
         ({"near": 9.0, "far": 3.0}, ValueError, "near"),
+        ({"far": 1e300}, ValueError, "far"),
+        ({"far": 1e-300}, ValueError, "far"),
+        ({"camera": Camera((0, 4, 0), (0, 4, -10), far=1e300)}, ValueError, "far"),
+        ({"aspect": 1e300}, ValueError, "aspect"),
+        ({"bits": np.zeros(2)}, ValueError, "bits"),
         ({"stable": "yes"}, TypeError, "stable"),
     ):
         with pytest.raises(kind, match=name):

@@ -83,6 +83,7 @@ def test_stored_depths_are_checked():
         (np.full((2, 2), 2**24, np.uint32), 24, ValueError, "below 2\\*\\*24"),
         (np.zeros((2, 2), np.uint16), 12, ValueError, "bits"),
         (np.zeros((2, 2), np.uint16), True, ValueError, "bits"),
+        (np.zeros((2, 2), np.uint16), np.zeros(2), ValueError, "bits"),
     ):
         with pytest.raises(kind, match=name):
             made(depth, bits)

@@ -214,6 +214,7 @@ def test_errors_name_the_argument(scenes):
         ("step", 2.0),
         ("max_steps", 0),
         ("offset", -1.0),
+        ("offset", 1e300),
         ("method", "best"),
     ):
         with pytest.raises(ValueError, match=name):
@@ -226,8 +227,9 @@ def test_errors_name_the_argument(scenes):
         SHADOW.distance_grid(ball, [(1, 1, 1), (0, 0, 0)])
     with pytest.raises(ValueError, match="resolution"):
         SHADOW.distance_grid(ball, box, resolution=2000)
-    with pytest.raises(TypeError, match="sources"):
-        SHADOW.distance_grid([1])
+    for wrong in ([1], 1.0, None):
+        with pytest.raises(TypeError, match="sources"):
+            SHADOW.distance_grid(wrong)
     with pytest.raises(ValueError, match="distances: expected shape"):
         SHADOW.DistanceGrid(np.zeros((2, 2)), (0, 0, 0), 1.0)
     with pytest.raises(ValueError, match="cell"):

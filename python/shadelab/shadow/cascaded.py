@@ -145,13 +145,14 @@ def cascades(
     resolution : int or (int, int)
         Texels of each map.
     aspect : float
-        The picture's width over its height.
+        The picture's width over its height, in [1e-6, 1e6].
     count, method, weight
         How the view is cut; see `cascade_splits`.
     near, far : float, optional
-        Where it is cut, along the camera's axis. By default the camera's own planes where it has them; else from the
-        nearest point of the mesh's bounds (at least a thousandth of the farthest) to the farthest, both moved outwards
-        to one of 8 numbers to an octave, so that they stay the same while the camera moves a little.
+        Where it is cut, along the camera's axis, from 1e-15 to 1e15. By default the camera's own planes where it has
+        them; else from the nearest point of the mesh's bounds (at least a thousandth of the farthest) to the farthest,
+        both moved outwards to one of 8 numbers to an octave, so that they stay the same while the camera moves a
+        little.
     stable : bool
         Fit each map to the sphere about its part, with texels of a coarse size at whole multiples of it: shadow edges
         stay where they are while the camera turns and moves. False fits it to the part's corners and the mesh: finer
@@ -202,7 +203,7 @@ def cascades(
     if not isinstance(camera, Camera):
         raise TypeError(f"camera: expected a Camera, got {type(camera).__name__}")
     size = _size(resolution)
-    wide = _arrays.number("aspect", aspect, above=0.0)
+    wide = _arrays.number("aspect", aspect, 1e-6, 1e6)
     steady, share = _arrays.flag("stable", stable), _arrays.number("blend", blend, 0.0, below=1.0)
     margin = _arrays.count("border", border, 0)
     if 2 * margin + 1 >= min(size):
@@ -216,6 +217,8 @@ def cascades(
     view = camera.view()
     to_world, axis = view[:3, :3].T, -view[2, :3]
     begin, end = _range(used, eye, axis, camera, near, far)
+    if not 1e-15 <= begin < end <= 1e15:
+        raise ValueError(f"near, far: expected distances from 1e-15 to 1e15, got {begin:g} and {end:g}")
     splits = cascade_splits(begin, end, count, method=method, weight=weight)
 
     # The frame and the origin follow from the mesh alone: nothing moves with the camera.
@@ -265,14 +268,14 @@ def _range(
         depths = (corners - eye) @ axis
         least, most = float(depths.min()), float(depths.max())
     if far is not None:
-        end = _arrays.number("far", far, above=0.0)
+        end = _arrays.number("far", far, 1e-15, 1e15)
     elif camera.far is not None and math.isfinite(camera.far):
         end = camera.far
     else:
         # A view away from all ends somewhere.
         end = _coarse(most) if most > 0.0 else 1.0
     if near is not None:
-        return _arrays.number("near", near, above=0.0, below=end), end
+        return _arrays.number("near", near, 1e-15, below=end), end
     if camera.near is not None and camera.near < end:
         return camera.near, end
     return 1.0 / _coarse(1.0 / min(max(least, 1e-3 * end), 0.5 * end)), end

@@ -138,7 +138,11 @@ def distance_grid(
     >>> grid.distances.shape, grid.cell, float(grid.distances[4, 4, 4])
     ((9, 9, 9), 0.5, -1.0)
     """
-    parts = [sources] if isinstance(sources, BVH) or callable(sources) else list(sources)
+    if isinstance(sources, BVH) or callable(sources):
+        sources = [sources]
+    if not isinstance(sources, Sequence):
+        raise TypeError(f"sources: expected a BVH, a function or a sequence of them, got {type(sources).__name__}")
+    parts = list(sources)
     if not parts:
         raise ValueError("sources: expected at least one")
     for part in parts:
@@ -365,7 +369,7 @@ def distance_field(
     profile = "outer" if outer else "box" if isinstance(light, RectLight) else "disk"
     most = _arrays.count("max_steps", max_steps, 1, 4096)
     share = _arrays.number("step", step, high=1.0, above=0.0)
-    gap = None if offset is None else _arrays.number("offset", offset, 0.0)
+    gap = None if offset is None else _arrays.number("offset", offset, 0.0, 1e15)
     if isinstance(field, DistanceGrid):
         shape, points, n = _points(field.distances.dtype, receivers, normals)
         result, flat = _result(out, shape, points.dtype)

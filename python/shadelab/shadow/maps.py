@@ -173,8 +173,7 @@ class ShadowMap:
 
 def _integers(value: Any, bits: Any) -> NDArray[Any]:
     """Stored depths of so many bits."""
-    if isinstance(bits, bool) or bits not in _BITS:
-        raise ValueError(f"bits: expected None, 16, 24 or 32, got {bits!r}")
+    _stored(bits)
     given = _arrays.array("depth", value)
     wanted = np.dtype(np.uint16 if bits == 16 else np.uint32)
     if given.dtype != wanted:
@@ -186,7 +185,8 @@ def _integers(value: Any, bits: Any) -> NDArray[Any]:
 
 def _sides(name: str, value: Any) -> tuple[float, float]:
     """One width for both sides, or a pair."""
-    pair = (value, value) if np.ndim(value) == 0 else tuple(value)
+    several = isinstance(value, list | tuple) or (isinstance(value, np.ndarray) and value.ndim > 0)
+    pair = tuple(value) if several else (value, value)
     if len(pair) != 2:
         raise ValueError(f"{name}: expected a number or a pair, got {value!r}")
     return _arrays.number(name, pair[0], 0.0), _arrays.number(name, pair[1], 0.0)
@@ -390,9 +390,15 @@ def _size(resolution: Any) -> tuple[int, int]:
 
 def _how(surface: Any, bits: Any) -> tuple[str, Bits]:
     _arrays.choice("surface", surface, _SURFACES)
-    if bits is not None and (isinstance(bits, bool) or bits not in _BITS):
-        raise ValueError(f"bits: expected None, 16, 24 or 32, got {bits!r}")
+    if bits is not None:
+        _stored(bits)
     return surface, bits
+
+
+def _stored(bits: Any) -> None:
+    """Refuses sizes of integers that depth is not stored in."""
+    if isinstance(bits, bool) or not isinstance(bits, int | np.integer) or bits not in _BITS:
+        raise ValueError(f"bits: expected None, 16, 24 or 32, got {bits!r}")
 
 
 def _finite(name: str, receivers: ArrayLike) -> Floats | None:

@@ -224,7 +224,7 @@ def _exponents(value: Any, dtype: np.dtype[Any]) -> tuple[float, float]:
 
 
 def _whole(bits: int, kind: str, filter: str) -> None:
-    if bits != 16:
+    if isinstance(bits, bool) or not isinstance(bits, int | np.integer) or bits != 16:
         raise ValueError(f"bits: expected 16 or None, got {bits!r}")
     if kind != "moment":
         raise ValueError(f"bits: 16 bits hold four powers, kind 'moment', got kind {kind!r}")
