@@ -10,7 +10,7 @@ from typing import Any
 import numpy as np
 import pytest
 import shadelab as sl
-from shadelab import accel, geometry, transform
+from shadelab import accel, geometry, light, raster, scene, shadow, transform
 
 CHAPTERS = {"transform": transform, "geometry": geometry, "accel": accel}
 
@@ -178,6 +178,51 @@ def functions() -> dict[str, tuple[Callable[..., Any], dict[str, Any]]]:
 
 FUNCTIONS = functions()
 
+THINGS = {"positions": BALL.positions, "faces": BALL.faces}
+SUN, PANEL = light.DirectionalLight((0.3, -1, 0.2)), light.RectLight((0, 4, 0), (1, 0, 0), (0, 0, 1), (5, 5, 5))
+AT = {"receivers": np.array([[0.0, -1.0, 0.0]]), "normals": np.array([0.0, 1.0, 0.0])}
+CHART = shadow.shadow_map(**THINGS, light=PANEL, resolution=32)
+MOMENTS = shadow.moment_map(CHART, "moment", filter="mip")
+SEEN = {
+    "clip": np.array([[-1.0, -1, 0, 1], [3, -1, 0, 1], [-1, 3, 0, 1]]),
+    "faces": np.array([[0, 1, 2]]),
+    "size": (4, 4),
+}
+FRACTIONS = {"lit": np.ones(3), "reference": np.ones(3)}
+VIEW = scene.Camera((0, 2, 6), (0, 0, 0), near=0.1, far=20.0)
+
+# Of other chapters, for hostile values alone.
+OTHERS: dict[str, tuple[Callable[..., Any], dict[str, Any]]] = {
+    "raster.rasterize": (raster.rasterize, SEEN),
+    "raster.rasterize_depth": (raster.rasterize_depth, SEEN),
+    "shadow.shadow_map": (shadow.shadow_map, {**THINGS, "light": PANEL, "resolution": 32}),
+    "shadow.cube_shadow_map": (
+        shadow.cube_shadow_map,
+        {**THINGS, "light": light.PointLight((0, 4, 0)), "resolution": 32},
+    ),
+    "shadow.cascades": (shadow.cascades, {**THINGS, "light": SUN, "camera": VIEW, "resolution": 32}),
+    "shadow.cascade_splits": (shadow.cascade_splits, {"near": 1.0, "far": 9.0}),
+    "shadow.virtual_shadow_map": (
+        shadow.virtual_shadow_map,
+        {**THINGS, "light": SUN, "receivers": AT["receivers"], "resolution": 64, "page": 64},
+    ),
+    "shadow.hard": (shadow.hard, {"shadow_map": CHART, **AT}),
+    "shadow.pcf": (shadow.pcf, {"shadow_map": CHART, **AT}),
+    "shadow.pcss": (shadow.pcss, {"shadow_map": CHART, **AT}),
+    "shadow.moment_map": (shadow.moment_map, {"shadow_map": CHART, "kind": "moment"}),
+    "shadow.moment": (shadow.moment, {"moment_map": MOMENTS, **AT}),
+    "shadow.variance_soft": (shadow.variance_soft, {"moment_map": MOMENTS, **AT}),
+    "shadow.ray_traced": (shadow.ray_traced, {"bvh": accel.BVH(**THINGS), **AT, "light": PANEL, "samples": 2}),
+    "shadow.half_plane": (
+        shadow.half_plane,
+        {**AT, "light": PANEL, "occluders": np.array([[0.0, 1, 0], [0, 0, 1], [-1, 0, 0]])},
+    ),
+    "shadow.distance_grid": (shadow.distance_grid, {"sources": accel.BVH(**THINGS), "resolution": 4}),
+    "shadow.acne": (shadow.acne, FRACTIONS),
+    "shadow.detached": (shadow.detached, FRACTIONS),
+    "shadow.detached_gap": (shadow.detached_gap, {**FRACTIONS, "receivers": np.ones((3, 3))}),
+}
+
 HOSTILE: dict[str, Any] = {
     "none": None,
     "object": object(),
@@ -242,6 +287,10 @@ HOSTILE: dict[str, Any] = {
 # Arguments that fix the shape of others, which are named then.
 RELATED = {
     ("geometry.clip_segment", "start"): "end",
+    ("shadow.cascade_splits", "near"): "far",
+    ("shadow.distance_grid", "sources"): "bounds",
+    **{(f"shadow.{n}", "positions"): "faces" for n in ("shadow_map", "cube_shadow_map", "cascades")},
+    ("shadow.virtual_shadow_map", "positions"): "faces",
     ("geometry.clip_polygon", "polygon"): "window",
     ("transform.transform_points", "points"): "matrix",
     ("transform.transform_vectors", "vectors"): "matrix",
@@ -255,7 +304,7 @@ CALLED = {"progress", "surface"}
 
 def complaint(name: str, argument: str, value: Any) -> str | None:
     """What is wrong with how a function takes a value for an argument."""
-    f, right = FUNCTIONS[name]
+    f, right = (FUNCTIONS | OTHERS)[name]
     given = {k: (v if callable(v) else copy.copy(v)) for k, v in right.items()} | {argument: value}
     try:
         with warnings.catch_warnings():
@@ -273,9 +322,9 @@ def complaint(name: str, argument: str, value: Any) -> str | None:
     return None
 
 
-@pytest.mark.parametrize("name", FUNCTIONS)
+@pytest.mark.parametrize("name", FUNCTIONS | OTHERS)
 def test_hostile_values_name_their_argument(name: str) -> None:
-    signature = inspect.signature(FUNCTIONS[name][0])
+    signature = inspect.signature((FUNCTIONS | OTHERS)[name][0])
     wrong = {
         f"{argument} = {kind}": said
         for argument in signature.parameters

@@ -108,6 +108,11 @@ class Material:
         return brdf.MetallicRoughness(self.base_color, self.metallic, self.roughness, self.specular)
 
 
+def _endless(value: Any) -> bool:
+    """Whether a number is infinite; what is no number is not."""
+    return isinstance(value, float | np.floating) and value == math.inf
+
+
 @dataclass(frozen=True)
 class Camera:
     """A camera: a pinhole, or a thin lens; still, or moving while its shutter is open.
@@ -168,10 +173,10 @@ class Camera:
         set_(self, "fov_y", _arrays.number("fov_y", self.fov_y, above=0, below=math.pi))
         if self.near is not None:
             set_(self, "near", _arrays.number("near", self.near, above=0))
-        if self.far is not None and not (self.far == math.inf):
+        if self.far is not None and not _endless(self.far):
             set_(self, "far", _arrays.number("far", self.far, above=self._near()))
         set_(self, "aperture", _arrays.number("aperture", self.aperture, 0))
-        if self.focus_distance is not None and not (self.focus_distance == math.inf):
+        if self.focus_distance is not None and not _endless(self.focus_distance):
             set_(self, "focus_distance", _arrays.number("focus_distance", self.focus_distance, above=0))
         set_(self, "shutter", _interval("shutter", self.shutter))
         if self.end is not None and not isinstance(self.end, Camera):
@@ -265,7 +270,11 @@ class Instance:
     def __post_init__(self) -> None:
         if not isinstance(self.mesh, Mesh):
             raise TypeError(f"mesh: expected a Mesh, got {type(self.mesh).__name__}")
-        materials = (self.materials,) if isinstance(self.materials, Material | brdf.Model) else tuple(self.materials)
+        given = self.materials
+        try:
+            materials = (given,) if isinstance(given, Material | brdf.Model) else tuple(given)
+        except TypeError:
+            materials = ()
         if not materials or not all(isinstance(material, Material | brdf.Model) for material in materials):
             raise TypeError("materials: expected one Material, or model of shadelab.brdf, or more")
         for material in materials:

@@ -271,7 +271,7 @@ def _coerced(name: str, value: Any, meta: Any) -> Any:
 
     if not core:
         return one(value)
-    if np.ndim(value) == 0:
+    if np.ndim(_arrays.array(name, value)) == 0:
         return (one(value),) * 3
     if np.shape(value) != (core,):
         if np.ndim(value) > 1:

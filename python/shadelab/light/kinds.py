@@ -40,12 +40,12 @@ def _freeze(light: Any, colors: str, skip: Sequence[str] = ()) -> None:
             continue
         value = getattr(light, each.name)
         if each.type == "bool":
-            object.__setattr__(light, each.name, bool(value))
+            object.__setattr__(light, each.name, _arrays.flag(each.name, value))
             continue
         if each.type == "float":
             object.__setattr__(light, each.name, _arrays.number(each.name, value))
             continue
-        array = np.asarray(value)
+        array = _arrays.array(each.name, value)
         if array.dtype.kind not in "fiu" or array.shape != (3,):
             raise ValueError(f"{each.name}: expected three numbers, got {value!r}")
         vector = tuple(_arrays.number(each.name, x) for x in array)
@@ -536,7 +536,10 @@ def _table(name: str, lights: Light | Sequence[Light]) -> Any:
 
     With what gives the pictures of those that show some, in order.
     """
-    several = [lights] if isinstance(lights, Light) else list(lights)
+    try:
+        several = [lights] if isinstance(lights, Light) else list(lights)
+    except TypeError:
+        raise TypeError(f"{name}: expected a light or lights, got {type(lights).__name__}") from None
     for light in several:
         if not isinstance(light, Light):
             raise TypeError(f"{name}: expected a light or lights, got {type(light).__name__}")

@@ -57,7 +57,7 @@ def _receivers(
     if material_ids is not None:
         if len(lead) > 1:
             raise ValueError(f"material_ids: expected materials of shape (m,) or (), got {lead}")
-        ids = np.asarray(material_ids)
+        ids = _arrays.array("material_ids", material_ids)
         if ids.dtype.kind not in "iu":
             raise TypeError(f"material_ids: expected integers, got dtype {ids.dtype}")
         if ids.shape != shape:

@@ -26,7 +26,7 @@ def size(size: tuple[int, int]) -> tuple[int, int]:
 
 
 def samples(samples: int) -> int:
-    if samples not in (1, 2, 4, 8):
+    if not isinstance(samples, int | np.integer) or samples not in (1, 2, 4, 8):
         raise ValueError(f"samples: expected 1, 2, 4 or 8, got {samples!r}")
     return int(samples)
 
@@ -40,7 +40,7 @@ def clip(clip: ArrayLike) -> Floats:
 
 def faces(faces: ArrayLike) -> NDArray[np.int32]:
     """Faces as int32; the kernel compares them with the number of vertices."""
-    array = np.asarray(faces)
+    array = _arrays.array("faces", faces)
     if array.dtype != np.int32:
         return _arrays.indices("faces", array.reshape(0, 3) if array.size == 0 else array, 3)
     if array.ndim != 2 or array.shape[-1] != 3:

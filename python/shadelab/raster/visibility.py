@@ -104,7 +104,10 @@ def rasterize(
     (width, height), samples = _arguments.size(size), _arguments.samples(samples)
     modes = _arguments.modes(cull, depth)
     shape = (height, width) if samples == 1 else (height, width, samples)
-    given: Any = Raster(None, None, None, None) if out is None else Raster(*out)  # type: ignore[arg-type]
+    try:
+        given: Any = Raster(*(out if out is not None else (None,) * 4))
+    except TypeError:
+        raise TypeError(f"out: expected a Raster, got {type(out).__name__}") from None
     result = Raster(
         _arrays.output("out.face", given.face, shape, np.int32),
         _arrays.output("out.u", given.u, shape, points.dtype),

@@ -7,10 +7,12 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike, DTypeLike, NDArray
 
+from .. import _arrays
+
 
 def unsigned(name: str, value: ArrayLike, dtype: DTypeLike) -> NDArray[Any]:
     """`value` as unsigned integers of `dtype`, refused rather than wrapped where they do not fit."""
-    array = np.asarray(value)
+    array = _arrays.array(name, value)
     if array.dtype.kind not in "iu":
         raise TypeError(f"{name}: expected integers, got dtype {array.dtype}")
     limit = np.iinfo(np.dtype(dtype)).max

@@ -149,7 +149,7 @@ def distance_grid(
         if not isinstance(part, BVH) and not callable(part):
             raise TypeError(f"sources: expected BVHs or functions, got {type(part).__name__}")
     _arrays.choice("sign", sign, ("winding", "angle_weighted", "none"))
-    cubes = _arrays.count("resolution", resolution, 1)
+    cubes = _arrays.count("resolution", resolution, 1, _MAX_NODES)
     margin = _arrays.number("padding", padding, 0.0)
     low, high = _bounds(parts, bounds, margin)
     extent = high - low
