@@ -195,6 +195,12 @@ VIEW = scene.Camera((0, 2, 6), (0, 0, 0), near=0.1, far=20.0)
 OTHERS: dict[str, tuple[Callable[..., Any], dict[str, Any]]] = {
     "raster.rasterize": (raster.rasterize, SEEN),
     "raster.rasterize_depth": (raster.rasterize_depth, SEEN),
+    "raster.g_buffer": (raster.g_buffer, {**SEEN, "positions": np.eye(3)}),
+    "raster.interpolate": (
+        raster.interpolate,
+        {"attributes": np.ones((3, 1)), "faces": SEEN["faces"], "raster": raster.rasterize(**SEEN)},
+    ),
+    "light.with_flux": (light.with_flux, {"light": PANEL, "watts": 1.0}),
     "shadow.shadow_map": (shadow.shadow_map, {**THINGS, "light": PANEL, "resolution": 32}),
     "shadow.cube_shadow_map": (
         shadow.cube_shadow_map,
@@ -287,6 +293,9 @@ HOSTILE: dict[str, Any] = {
 # Arguments that fix the shape of others, which are named then.
 RELATED = {
     ("geometry.clip_segment", "start"): "end",
+    ("raster.g_buffer", "clip"): "positions",
+    ("raster.interpolate", "attributes"): "faces",
+    ("raster.interpolate", "faces"): "raster",
     ("shadow.cascade_splits", "near"): "far",
     ("shadow.distance_grid", "sources"): "bounds",
     **{(f"shadow.{n}", "positions"): "faces" for n in ("shadow_map", "cube_shadow_map", "cascades")},

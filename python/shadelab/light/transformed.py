@@ -206,6 +206,8 @@ def ltc(
     core["alpha"] = (_arrays.floats("alpha", alpha, dtype), 0)
     shape, flat = _arrays.broadcast(core)
     parts = np.empty((len(flat[0]), 5), dtype)
+    if table is not None and not isinstance(table, LtcTable):
+        raise TypeError(f"table: expected an LtcTable, got {type(table).__name__}")
     own = None if table is None else table._lobes()
     _kernels.ltc_light(_table("light", light), own, flat, parts)
     base, edge = (np.ascontiguousarray(p).reshape(shape) for p in parts.T[:2])

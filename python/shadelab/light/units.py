@@ -150,12 +150,16 @@ def with_flux(light: Kind, watts: ArrayLike) -> Kind:
     >>> float(photometric(flux(bulb)).round(9))
     800.0
     """
-    wanted = np.broadcast_to(_arrays.floats("watts", watts, np.float64), (3,))
+    given = _arrays.floats("watts", watts, np.float64)
+    if given.shape not in ((), (3,)):
+        raise ValueError(f"watts: expected a number or three, got shape {given.shape}")
+    if not (np.isfinite(given).all() and (given >= 0).all() and (given <= 1e30).all()):
+        raise ValueError(f"watts: expected numbers in [0, 1e30], got {given.tolist()}")
+    wanted = np.broadcast_to(given, (3,))
     name = "intensity" if isinstance(light, PointLight | SpotLight) else "radiance"
     changes: dict[str, Any] = {name: (1.0, 1.0, 1.0)}
-    unit = (
-        flux(dataclasses.replace(light, **changes)) if not isinstance(light, DirectionalLight | AmbientLight) else None
-    )
+    placed = isinstance(light, Light) and not isinstance(light, DirectionalLight | AmbientLight)
+    unit = flux(dataclasses.replace(light, **changes)) if placed else None
     if unit is None:
         raise TypeError(f"light: expected a light with a place, got {type(light).__name__}")
     if not min(unit) > 0:

@@ -102,6 +102,8 @@ def g_buffer(
     (width, height), samples = _arguments.size(size), _arguments.samples(samples)
     modes = _arguments.modes(cull, depth)
     shape = (height, width) if samples == 1 else (height, width, samples)
+    if out is not None and not isinstance(out, GBuffer):
+        raise TypeError(f"out: expected a GBuffer, got {type(out).__name__}")
     result = GBuffer(
         *(
             _arrays.output(

@@ -108,6 +108,9 @@ def interpolate(
     >>> interpolate([[0.0], [8.0], [0.0]], faces, seen, derivatives=True, clip=clip).dx[0, :, 0]
     array([1., 1., 1., 1.])
     """
+    if not all(hasattr(raster, name) for name in ("face", "u", "v")):
+        raise TypeError(f"raster: expected what `rasterize` returns, got {type(raster).__name__}")
+    derivatives = _arrays.flag("derivatives", derivatives)
     dtype = _arrays.result_dtype(raster=raster.u)
     values = _arrays.floats("attributes", attributes, dtype)
     if values.ndim != 2:

@@ -112,7 +112,7 @@ def render_lambert(
         light / length,
         _arguments.triple("color", color),
         _arguments.triple("background", background),
-        bool(two_sided),
+        _arrays.flag("two_sided", two_sided),
     )
     if _arrays.choice("format", format, ("float", "rgba8")) == "float":
         picture = _arrays.output("out", out, (height, width, 3), points.dtype)
