@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from typing import Any, Literal, cast
 
 import numpy as np
@@ -118,13 +118,19 @@ class Mesh:
         def convert(a: Floats | None) -> Floats | None:
             return None if a is None else a.astype(target)
 
-        return replace(
-            self,
+        return self._with(
             positions=self.positions.astype(target),
             normals=convert(self.normals),
             uvs=convert(self.uvs),
             colors=convert(self.colors),
         )
+
+    def _with(self, positions: Floats, **others: Any) -> Mesh:
+        """The mesh with arrays that fit it, but that positions may overflow; checking all took most of a flattening."""
+        _finite("positions", positions)
+        made = object.__new__(Mesh)
+        made.__dict__.update(self.__dict__, positions=positions, **others)
+        return made
 
     def transformed(self, matrix: ArrayLike) -> Mesh:
         """The mesh through an affine matrix (4, 4). A mirroring turns faces round, so that outside stays outside."""
@@ -140,7 +146,7 @@ class Mesh:
             lost = ~np.isfinite(normals).all(-1)
             left = vertex_normals(positions, faces)[lost]
             normals[lost] = np.where(np.isfinite(left).all(-1, keepdims=True), left, 0.0)
-        return replace(self, positions=positions, normals=normals, faces=faces)
+        return self._with(positions=positions, normals=normals, faces=faces)
 
 
 def _rows(name: str, value: ArrayLike, width: int, dtype: DTypeLike | None = None) -> Floats:

@@ -452,8 +452,6 @@ class Scene:
                 shading = np.nan_to_num(_mesh.vertex_normals(world.positions, world.faces), nan=0.0)
             normals.append(shading)
         materials = tuple(table) or (Material(),)
-        models = [m._model() if isinstance(m, Material) else m for m in materials]
-        seen = [m._stand_in() for m in models]
         counts = [len(w.faces) for w in worlds]
         return SceneArrays(
             _join([w.positions for w in worlds], (0, 3), dtype),
@@ -464,14 +462,23 @@ class Scene:
             _join(ids, (0,), np.int32),
             np.repeat(np.arange(len(worlds), dtype=np.int32), counts),
             materials,
-            np.array([m.base_color for m in seen], dtype),
-            np.array([m.metallic for m in seen], dtype),
-            np.array([m.roughness for m in seen], dtype),
-            np.array([getattr(m, "emission", (0.0, 0.0, 0.0)) for m in materials], dtype),
-            np.array([m.specular for m in seen], dtype),
-            np.array([m._number() for m in models], np.int32),
-            np.array([m._row() for m in models], dtype),
+            **_tables(materials, dtype),
         )
+
+
+def _tables(materials: Sequence[Material | brdf.Model], dtype: DTypeLike) -> dict[str, NDArray[Any]]:
+    """The tables of materials among `SceneArrays`."""
+    models = [m._model() if isinstance(m, Material) else m for m in materials]
+    seen = [m._stand_in() for m in models]
+    return {
+        "base_color": np.array([m.base_color for m in seen], dtype),
+        "metallic": np.array([m.metallic for m in seen], dtype),
+        "roughness": np.array([m.roughness for m in seen], dtype),
+        "emission": np.array([getattr(m, "emission", (0.0, 0.0, 0.0)) for m in materials], dtype),
+        "specular": np.array([m.specular for m in seen], dtype),
+        "kinds": np.array([m._number() for m in models], np.int32),
+        "rows": np.array([m._row() for m in models], dtype),
+    }
 
 
 def _join(parts: Sequence[NDArray[Any]], empty: tuple[int, ...], dtype: DTypeLike) -> NDArray[Any]:

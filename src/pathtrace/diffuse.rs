@@ -47,16 +47,10 @@ pub fn gather<T: Real, S: Simd>(s: S, of: impl Fn(usize) -> [T; 3]) -> Vec3<T::V
 
 /// What stands at the corners of eight faces.
 #[inline(always)]
-fn vertices<T: Real, S: Simd>(
-    s: S,
-    faces: &[[i32; 3]],
-    at: &[usize; 8],
-    of: &[[T; 3]],
-) -> [Vec3<T::V8<S>>; 3] {
+fn vertices<T: Real, S: Simd>(s: S, of: impl Fn(usize) -> [[T; 3]; 3]) -> [Vec3<T::V8<S>>; 3] {
     let (mut a, mut b, mut c) = ([[T::zero(); 8]; 3], [[T::zero(); 8]; 3], [[T::zero(); 8]; 3]);
     for l in 0..8 {
-        let [i, j, k] = faces[at[l]];
-        let (x, y, z) = (of[i as usize], of[j as usize], of[k as usize]);
+        let [x, y, z] = of(l);
         for m in 0..3 {
             (a[m][l], b[m][l], c[m][l]) = (x[m], y[m], z[m]);
         }
@@ -121,12 +115,13 @@ fn meet<T: Real, S: Simd>(s: S, tracer: &Tracer<'_, T>, wave: &Wave<T>, chunk: &
     for l in 0..chunk.len() {
         index[l] = chunk[l] as usize;
     }
-    let (mut faces, mut slots) = ([0usize; 8], [0u32; 8]);
+    let (mut faces, mut copies, mut slots) = ([0usize; 8], [-1i32; 8], [0u32; 8]);
     let (mut keys, mut samples) = ([0u32; 8], [0u32; 8]);
     let (mut u, mut v, mut scale) = ([T::zero(); 8], [T::zero(); 8], [T::one(); 8]);
     for l in 0..8 {
         let hit = &wave.hits[index[l]];
         (faces[l], u[l], v[l]) = (hit.face as usize, hit.u, hit.v);
+        copies[l] = wave.copy(index[l]);
         (slots[l], scale[l]) = (wave.paths[index[l]].slot, wave.paths[index[l]].scale);
         (keys[l], samples[l]) = (wave.keys[slots[l] as usize], wave.samples[slots[l] as usize]);
     }
@@ -136,24 +131,35 @@ fn meet<T: Real, S: Simd>(s: S, tracer: &Tracer<'_, T>, wave: &Wave<T>, chunk: &
         #[inline(always)]
         |l| wave.rays[index[l]].direction,
     );
-    let at = &faces;
-    let corners = vertices::<T, S>(s, scene.faces, at, scene.positions);
-    let facing = match scene.normals {
-        Some(normals) => {
-            Facing::of(corners, Some(vertices::<T, S>(s, scene.faces, at, normals)), u, v, direction)
-        }
-        None => Facing::of(corners, None, u, v, direction),
-    };
+    let corners = vertices::<T, S>(
+        s,
+        #[inline(always)]
+        |l| scene.corners_of(faces[l], copies[l]),
+    );
+    let mut shading = None;
+    if let Some(normals) = scene.normals {
+        shading = Some(vertices::<T, S>(
+            s,
+            #[inline(always)]
+            |l| scene.normals_of(faces[l], copies[l], normals),
+        ));
+    }
+    let facing = Facing::of(corners, shading, u, v, direction);
     let mut albedo = gather::<T, S>(
         s,
         #[inline(always)]
         |l| {
-            let row = &scene.rows[scene.material_ids[faces[l]] as usize];
+            let row = &scene.rows[scene.row_of(faces[l], copies[l])];
             [row[0], row[1], row[2]]
         },
     );
     if let Some(colors) = scene.colors {
-        albedo = albedo.times(between(vertices::<T, S>(s, scene.faces, at, colors), u, v));
+        let colors = vertices::<T, S>(
+            s,
+            #[inline(always)]
+            |l| scene.colors_of(faces[l], copies[l], colors),
+        );
+        albedo = albedo.times(between(colors, u, v));
     }
     let carried = gather::<T, S>(
         s,

@@ -139,7 +139,16 @@ impl<T: Real> Lighting<T> {
 impl<T: Real> Surfaces<'_, T> {
     /// Of the ball around everything.
     fn radius(&self) -> f64 {
-        let [low, high] = self.bvh.bounds();
+        let [mut low, mut high] = self.bvh.bounds();
+        if let Some(copies) = self.copies {
+            let [l, h] = copies.tree.bounds();
+            if self.bvh.faces() == 0 {
+                (low, high) = (l, h);
+            }
+            for k in 0..3 {
+                (low[k], high[k]) = (Lanes::min(low[k], l[k]), Lanes::max(high[k], h[k]));
+            }
+        }
         let side = |k: usize| high[k].to_f64() - low[k].to_f64();
         0.5 * (0..3).map(|k| side(k) * side(k)).sum::<f64>().sqrt()
     }

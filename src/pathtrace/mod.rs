@@ -12,6 +12,7 @@
 
 pub mod aov;
 pub mod camera;
+pub(crate) mod copies;
 mod diffuse;
 pub mod direct_light;
 #[cfg_attr(not(feature = "python"), allow(dead_code))] // asked for by Python alone

@@ -64,6 +64,8 @@ pub struct Options {
     pub seed: u64,
     pub strategy: Strategy,
     pub sampler: Sampler,
+    /// The sample that is the sampler's first.
+    pub base: u32,
     pub selection: Selection,
     /// Samples whose largest channel exceeds this are scaled down to it.
     pub clamp: f64,
@@ -274,6 +276,7 @@ fn look<T: Real>(
     let half = T::of(0.5);
     let (column, row) = (T::of((pixel % width) as f64) + half, T::of((pixel / width) as f64) + half);
     for sample in samples {
+        let sample = sample.wrapping_sub(tracer.options.base);
         let [x, y] = filter.warp(draws.pair::<T>(key, sample, purpose::PIXEL));
         let lens = if camera.has_lens() { draws.pair(key, sample, purpose::LENS) } else { [half; 2] };
         let time =

@@ -1,6 +1,7 @@
 //! What a ray meets: the mesh with its materials, read at a hit.
 
 use super::Emitters;
+use super::copies::Copies;
 use crate::accel::{Bvh, Hit};
 use crate::brdf::Bsdf;
 use crate::brdf::Row;
@@ -10,9 +11,12 @@ use crate::real::{Lanes, Real};
 use crate::transform::orthonormal_basis::Frame;
 use crate::vec::Vec3;
 
-/// A scene in world space. Indices are in range, and every face has a material.
+/// A scene in world space, but for copies of meshes. Indices are in range, and every face has a material.
 pub struct Surfaces<'a, T> {
+    /// Of all but the copies.
     pub bvh: &'a Bvh<T>,
+    /// Meshes whose faces follow those of the world, in their own space.
+    pub copies: Option<&'a Copies<'a, T>>,
     pub positions: &'a [[T; 3]],
     pub faces: &'a [[i32; 3]],
     /// Shading normals of vertices.
@@ -123,26 +127,37 @@ impl<T: Real> Surfaces<'_, T> {
         (b - a).cross(c - a).normalize()
     }
 
-    /// The attribute at a hit, from those of the face's vertices.
-    #[inline(always)]
-    fn interpolate(&self, of_vertices: &[[T; 3]], hit: &Hit<T>) -> Vec3<T> {
-        between(self.faces[hit.face as usize].map(|v| of_vertices[v as usize].into()), hit.u, hit.v)
-    }
-
     /// The surface at a hit, met along the unit `direction`; None on a face without area.
     #[inline(always)]
     pub fn at(&self, hit: &Hit<T>, direction: Vec3<T>) -> Option<Spot<T>> {
+        self.at_copy(hit, -1, direction)
+    }
+
+    /// The surface at a hit with a copy of a mesh; -1 for the rest.
+    #[inline(always)]
+    pub fn at_copy(&self, hit: &Hit<T>, copy: i32, direction: Vec3<T>) -> Option<Spot<T>> {
         let face = hit.face as usize;
-        let normals = self.normals.map(|normals| self.faces[face].map(|v| Vec3::from(normals[v as usize])));
+        let normals = match self.normals {
+            Some(normals) => Some(vectors(self.normals_of(face, copy, normals))),
+            None => None,
+        };
         let Facing { point, normal, shading, back } =
-            Facing::of(self.corners(face), normals, hit.u, hit.v, direction);
+            Facing::of(vectors(self.corners_of(face, copy)), normals, hit.u, hit.v, direction);
         if normal.x.is_nan() {
             return None;
         }
-        let row = self.material_ids[face] as usize;
-        let color = self.colors.map_or(Vec3::splat(T::one()), |colors| self.interpolate(colors, hit));
+        let row = self.row_of(face, copy);
+        let color = match self.colors {
+            Some(colors) => between(vectors(self.colors_of(face, copy, colors)), hit.u, hit.v),
+            None => Vec3::splat(T::one()),
+        };
         let bsdf = Bsdf::tinted(self.kinds[row], &self.rows[row], color)?;
         let frame = Frame::about(if bsdf.transmits() && back { -shading } else { shading });
         Some(Spot { point, normal, frame, wo: frame.local(-direction), bsdf })
     }
+}
+
+#[inline(always)]
+fn vectors<T: Real>([a, b, c]: [[T; 3]; 3]) -> [Vec3<T>; 3] {
+    [a.into(), b.into(), c.into()]
 }

@@ -56,6 +56,8 @@ pub struct Wave<T> {
     pub rays: Vec<Ray<T>>,
     pub paths: Vec<Path<T>>,
     pub hits: Vec<Hit<T>>,
+    /// Which copy of a mesh each hit is of, -1 for none; empty where there are no copies.
+    pub copies: Vec<i32>,
     /// Those of the next depth.
     pub next_rays: Vec<Ray<T>>,
     pub next_paths: Vec<Path<T>>,
@@ -80,6 +82,7 @@ impl<T: Real> Wave<T> {
             rays: Vec::new(),
             paths: Vec::new(),
             hits: Vec::new(),
+            copies: Vec::new(),
             next_rays: Vec::new(),
             next_paths: Vec::new(),
             shadow_rays: Vec::new(),
@@ -101,6 +104,12 @@ impl<T: Real> Wave<T> {
         self.keys.clear();
         self.samples.clear();
         self.sums.clear();
+    }
+
+    /// Which copy of a mesh a hit is of.
+    #[inline(always)]
+    pub fn copy(&self, i: usize) -> i32 {
+        if self.copies.is_empty() { -1 } else { self.copies[i] }
     }
 
     /// Adds a path.
@@ -137,6 +146,10 @@ impl<T: Real> Tracer<'_, T> {
             }
             wave.hits.resize(wave.rays.len(), Hit::miss());
             self.scene.bvh.closest_hits(s, &wave.rays, &mut wave.hits);
+            if let Some(copies) = self.scene.copies {
+                wave.copies.resize(wave.rays.len(), -1);
+                copies.closest_hits(s, &wave.rays, &mut wave.hits, &mut wave.copies);
+            }
             self.collect(s, wave, depth);
             if depth == self.options.max_depth {
                 return;
@@ -172,6 +185,7 @@ impl<T: Real> Tracer<'_, T> {
         wave.sky.clear();
         let before = depth.saturating_sub(1);
         for i in 0..wave.rays.len() {
+            let copy = wave.copy(i);
             let (ray, hit, path) = (&wave.rays[i], wave.hits[i], wave.paths[i]);
             let (origin, direction) = (Vec3::from(ray.origin), Vec3::from(ray.direction));
             let sum = &mut wave.sums[path.slot as usize];
@@ -180,9 +194,11 @@ impl<T: Real> Tracer<'_, T> {
                     self.found(path.pdf, pdf * self.lighting.chance(source, origin, path.normal, before));
                 *sum = *sum + path.carried.times(radiance) * share;
             } else if hit.is_hit() {
-                let row = scene.material_ids[hit.face as usize] as usize;
-                if let Some((radiance, other)) =
-                    scene.glow(self.lighting, hit.face as usize, ray, path.normal, hit.t, before)
+                let row = scene.row_of(hit.face as usize, copy);
+                // Copies emit nothing.
+                if copy < 0
+                    && let Some((radiance, other)) =
+                        scene.glow(self.lighting, hit.face as usize, ray, path.normal, hit.t, before)
                 {
                     *sum = *sum + path.carried.times(radiance) * self.found(path.pdf, other);
                 }
@@ -219,7 +235,7 @@ impl<T: Real> Tracer<'_, T> {
         for q in 0..wave.other.len() {
             let i = wave.other[q] as usize;
             let (direction, path) = (Vec3::from(wave.rays[i].direction), wave.paths[i]);
-            let Some(spot) = self.scene.at(&wave.hits[i], direction) else { continue };
+            let Some(spot) = self.scene.at_copy(&wave.hits[i], wave.copy(i), direction) else { continue };
             self.ask_lights(wave, &spot, path, depth);
             self.go_on(wave, &spot, path, depth);
         }
@@ -349,6 +365,9 @@ impl<T: Real> Tracer<'_, T> {
         }
         wave.blocked.resize(wave.shadow_rays.len(), false);
         self.scene.bvh.any_hits(s, &wave.shadow_rays, &mut wave.blocked);
+        if let Some(copies) = self.scene.copies {
+            copies.any_hits(s, &wave.shadow_rays, &mut wave.blocked);
+        }
         for (i, &(value, slot)) in wave.carried.iter().enumerate() {
             if !wave.blocked[i] {
                 let sum = &mut wave.sums[slot as usize];

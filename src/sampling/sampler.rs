@@ -57,6 +57,22 @@ impl Sampler {
         })
     }
 
+    /// As [`Sampler::new`], but a set of `samples` that begins with sample `first` has a seed of its own: rounds of a
+    /// picture are stratified each for itself. Also the number from which samples count.
+    pub fn round(name: &str, seed: u64, first: u32, samples: u32) -> Option<(Self, u32)> {
+        let plain = Sampler::new(name, seed, samples)?;
+        if !plain.has_size() {
+            return Some((plain, 0));
+        }
+        let seed = seed.wrapping_add(u64::from(first).wrapping_mul(0x9E37_79B9_7F4A_7C15));
+        Some((Sampler::new(name, seed, samples)?, first))
+    }
+
+    /// Whether points belong to sets of a size.
+    pub fn has_size(&self) -> bool {
+        matches!(self, Sampler::Stratified(_) | Sampler::LatinHypercube(_) | Sampler::MultiJittered(_))
+    }
+
     /// A number in [0, 1). Where two are wanted, [`Sampler::pair`] costs no more.
     #[inline(always)]
     pub fn number<T: Real>(&self, pixel: u64, sample: u32, dimension: u32) -> T {

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from functools import cached_property
 from typing import TYPE_CHECKING, Any, NamedTuple
 
@@ -11,6 +11,7 @@ import numpy as np
 from .. import _arrays, light
 from ..accel import BVH
 from ._common import check_bvh, surface_offset
+from ._copies import Copies
 
 if TYPE_CHECKING:
     from ..scene import Scene, SceneArrays
@@ -33,12 +34,25 @@ class Moment(NamedTuple):
 class World:
     """The scene and its hierarchy at time 0, refitted at others."""
 
-    def __init__(self, scene: Scene, bvh: BVH | None, dtype: np.dtype[Any], all_directions: bool = False) -> None:
-        """With `all_directions`, light that comes evenly from everywhere is background, not a source to be asked."""
+    def __init__(
+        self,
+        scene: Scene,
+        bvh: BVH | None,
+        dtype: np.dtype[Any],
+        all_directions: bool = False,
+        shared: Sequence[int] = (),
+    ) -> None:
+        """With `all_directions`, light that comes evenly from everywhere is background, not a source to be asked.
+
+        The instances in `shared` are traced as copies.
+        """
         if not callable(getattr(scene, "flatten", None)) or isinstance(scene, np.ndarray):
             raise TypeError(f"scene: expected a Scene, got {type(scene).__name__}")
         self.scene, self.dtype = scene, dtype
-        self.arrays = scene.flatten(dtype)
+        self.copies = Copies(scene, shared, dtype) if shared else None
+        # What is flattened: all but the copies.
+        self._rest = self.copies.rest if self.copies else scene
+        self.arrays = self._rest.flatten(dtype)
         if bvh is None:
             bvh = BVH(self.arrays.positions, self.arrays.faces)
         else:
@@ -48,7 +62,11 @@ class World:
                 raise ValueError(f"bvh: expected one of the flattened scene in {dtype}")
         self.bvh = bvh
         self._all_directions = all_directions
-        _arrays.warn_if_coarse(self.arrays.positions, dtype, 5)
+        _arrays.warn_if_coarse(self._with_copies(self.arrays.positions), dtype, 5)
+
+    def _with_copies(self, positions: Any) -> Any:
+        """Positions of the rest, and the corners of the boxes of copies."""
+        return positions if self.copies is None else np.concatenate([positions, self.copies.corners])
 
     @cached_property
     def _sources(self) -> tuple[Any, tuple[float, ...], Any]:
@@ -67,17 +85,18 @@ class World:
 
     def given(self, moment: Moment) -> tuple[Any, ...]:
         """The scene at a moment, as kernels take it."""
-        a = moment.arrays
+        a, copies = (moment.arrays, None) if self.copies is None else self.copies.join(moment.arrays)
+        offset = surface_offset(self._with_copies(moment.arrays.positions))
         tables = (a.positions, a.faces, a.normals, a.material_ids, a.kinds, a.rows, a.emission)
         flat = [np.require(x, requirements=["C", "A"]) for x in tables]
         lights, background, sky = self._sources
-        return moment.bvh._tree, flat[:4], a.colors, flat[4:], lights, (background, surface_offset(a.positions), sky)
+        return moment.bvh._tree, flat[:4], a.colors, flat[4:], lights, (background, offset, sky), copies
 
     def at(self, time: float) -> tuple[SceneArrays, BVH]:
         """The scene at a time in [0, 1]."""
         if time == 0 or not self.scene.moves:
             return self.arrays, self.bvh
-        arrays = self.scene.flatten(self.dtype, time)
+        arrays = self._rest.flatten(self.dtype, time)
         return arrays, self.bvh.refit(arrays.positions)
 
     def moments(self, start: int, samples: int, seed: int) -> Iterator[Moment]:

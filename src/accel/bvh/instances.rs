@@ -329,6 +329,30 @@ impl<T: Real> Instances<T> {
         Ok(())
     }
 
+    /// An object in its place.
+    #[inline(always)]
+    pub fn get(&self, i: usize) -> &Instance<T> {
+        &self.instances[i]
+    }
+
+    /// Of all instances; as wide as the tree over them.
+    pub fn bounds(&self) -> [[T; 3]; 2] {
+        self.upper.bounds()
+    }
+
+    /// The nearest hit of one ray, and its instance; -1 for none.
+    #[inline(always)]
+    pub fn closest_hit<S: Simd>(&self, s: S, ray: &Ray<T>) -> (Hit<T>, i32) {
+        self.nearest::<_, _, false>(s, &WorldRay { ray: *ray, ignore_instance: -1 }, &mut Uncounted)
+    }
+
+    /// Whether anything is in the way of one ray.
+    #[inline(always)]
+    pub fn any_hit<S: Simd>(&self, s: S, ray: &Ray<T>) -> bool {
+        let ray = WorldRay { ray: *ray, ignore_instance: -1 };
+        self.nearest::<_, _, true>(s, &ray, &mut Uncounted).1 >= 0
+    }
+
     pub fn closest_hits(
         &self,
         watch: &mut dyn Watch,

@@ -21,7 +21,7 @@ pub struct Instances {
 }
 
 /// A precision in which instances are held.
-trait Precision: Held {
+pub trait Precision: Held {
     fn held(instances: &Instances) -> Option<&Arc<Placed<Self>>>;
 }
 
@@ -37,7 +37,7 @@ impl Precision for f64 {
     }
 }
 
-fn placed<T: Precision>(instances: &Instances) -> PyResult<&Arc<Placed<T>>> {
+pub fn placed<T: Precision>(instances: &Instances) -> PyResult<&Arc<Placed<T>>> {
     T::held(instances).ok_or_else(|| PyTypeError::new_err("the instances are of another precision"))
 }
 

@@ -1,6 +1,6 @@
 //! Bindings of `accel`: bvh, uniform_grid, octree, kd_tree, bsp_tree, brute_force, morton, offset_ray.
 
-mod instances;
+pub(super) mod instances;
 mod morton;
 mod moving;
 mod points;
@@ -8,7 +8,7 @@ mod cells;
 mod rays;
 mod tree;
 
-pub use tree::{Held, Tree};
+pub use tree::Tree;
 
 use pyo3::prelude::*;
 

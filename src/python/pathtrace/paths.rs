@@ -10,11 +10,12 @@ use crate::sampling::sampler::Sampler;
 use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
 
-/// How a picture is sampled: width, samples, start, max_depth, roulette, seed; strategy, sampler, selection; clamp.
-type OptionsTuple = ((usize, u32, u32, u32, u32, u64), [String; 3], f64);
+/// How a picture is sampled: width, samples, start, max_depth, roulette, seed; strategy, sampler, selection; clamp;
+/// first and number of the samples of the round that these are of.
+type OptionsTuple = ((usize, u32, u32, u32, u32, u64), [String; 3], f64, (u32, u32));
 
 fn options(
-    ((width, samples, start, max_depth, roulette, seed), names, clamp): OptionsTuple,
+    ((width, samples, start, max_depth, roulette, seed), names, clamp, round): OptionsTuple,
 ) -> PyResult<Options> {
     let [strategy, sampler, selection] = names;
     let strategy = match strategy.as_str() {
@@ -24,8 +25,8 @@ fn options(
         "mis" => Strategy::Mis,
         _ => return Err(unknown("strategy", &strategy)),
     };
-    let sampler = Sampler::new(&sampler, seed, start.saturating_add(samples))
-        .ok_or_else(|| unknown("sampler", &sampler))?;
+    let (sampler, base) =
+        Sampler::round(&sampler, seed, round.0, round.1).ok_or_else(|| unknown("sampler", &sampler))?;
     let selection = match selection.as_str() {
         "all" => Selection::All,
         "power" => Selection::Power,
@@ -33,7 +34,19 @@ fn options(
         "auto" => Selection::Auto,
         _ => return Err(unknown("light_selection", &selection)),
     };
-    Ok(Options { width, samples, start, max_depth, roulette, seed, strategy, sampler, selection, clamp })
+    Ok(Options {
+        width,
+        samples,
+        start,
+        max_depth,
+        roulette,
+        seed,
+        strategy,
+        sampler,
+        base,
+        selection,
+        clamp,
+    })
 }
 
 /// `out`: mean and variance, then counts of outliers and what clamping removed, if wanted. With `pixels`, their rows
@@ -53,7 +66,8 @@ pub fn path_trace(
     };
     real!(mean, T => {
         let world = World::<T>::of(&world)?;
-        let scene = world.surfaces()?;
+        let copies = world.copies()?;
+        let scene = world.surfaces(copies.as_ref())?;
         let options = self::options(options)?;
         let (camera, filter) = (camera::<T>(view.0), filter(view.1)?);
         let pixels = pixels.map(|p| In::<i32>::of("pixels", p)).transpose()?;

@@ -25,7 +25,8 @@ pub fn recursion(
     let [mean, variance, outliers] = &out;
     real!(mean, T => {
         let world = World::<T>::of(&world)?;
-        let scene = world.surfaces()?;
+        let copies = world.copies()?;
+        let scene = world.surfaces(copies.as_ref())?;
         let lighting = Lighting::new(&scene, Selection::All);
         let stage = Stage { scene: &scene, lighting: &lighting };
         let (width, samples, start, max_depth, seed, cutoff) = options;

@@ -1,16 +1,20 @@
 //! A scene as the tracers' faces hand it over.
 
+use crate::accel::bvh::instances::Instances as Placed;
 use crate::light::Light;
+use crate::pathtrace::copies::{Copies, Placement, mirrors};
 use crate::pathtrace::{Emitters, Surfaces};
-use crate::python::accel::{Held as InTree, Tree};
+use crate::python::accel::Tree;
+use crate::python::accel::instances::{Instances, Precision, placed};
 use crate::python::array::In;
 use crate::python::environment::{Held as InPanorama, Surroundings};
 use crate::python::light::lights;
 use numpy::Element;
 use pyo3::prelude::*;
+use std::sync::Arc;
 
 /// Positions, faces, normals, material_ids; colours of vertices; kinds and rows of reflection models, and emission;
-/// lights; background, offset of rays, panorama.
+/// lights; background, offset of rays, panorama; copies of meshes.
 pub type WorldTuple<'py> = (
     Bound<'py, Tree>,
     [Bound<'py, PyAny>; 4],
@@ -18,7 +22,12 @@ pub type WorldTuple<'py> = (
     [Bound<'py, PyAny>; 3],
     Bound<'py, PyAny>,
     ([f64; 3], f64, Option<Bound<'py, Surroundings>>),
+    Option<CopiesTuple<'py>>,
 );
+
+/// The tree of two levels; the first face and the first slot of each copy; slots. Faces of the world come before those
+/// of all copies.
+type CopiesTuple<'py> = (Bound<'py, Instances>, [Bound<'py, PyAny>; 3]);
 
 /// The arrays of a scene, held while a kernel reads them.
 pub struct World<'a, 'py, T: Element> {
@@ -33,15 +42,44 @@ pub struct World<'a, 'py, T: Element> {
     emission: In<'py, T>,
     lights: Vec<Light<T>>,
     emitters: Emitters,
+    copies: Option<Meshes<'py, T>>,
 }
 
-impl<'a, 'py, T: Element + InTree + InPanorama> World<'a, 'py, T> {
+/// Copies of meshes, held.
+struct Meshes<'py, T> {
+    tree: Arc<Placed<T>>,
+    placements: Vec<Placement>,
+    slots: In<'py, i32>,
+}
+
+impl<'py, T: Precision> Meshes<'py, T> {
+    fn of((tree, arrays): &CopiesTuple<'py>) -> PyResult<Self> {
+        let [faces, slots, rows] = arrays;
+        let (faces, slots) = (In::<i32>::of("first_face", faces)?, In::<i32>::of("first_slot", slots)?);
+        let tree = placed::<T>(tree.get())?.clone();
+        let firsts = faces.slice()?.iter().zip(slots.slice()?);
+        let placements = firsts.enumerate().map(|(i, (&first_face, &first_slot))| Placement {
+            first_face,
+            first_slot,
+            mirrored: mirrors(&tree.get(i).to_world),
+        });
+        Ok(Meshes { placements: placements.collect(), tree, slots: In::of("slots", rows)? })
+    }
+
+    fn copies(&self) -> PyResult<Copies<'_, T>> {
+        Ok(Copies { tree: &self.tree, placements: &self.placements, slots: self.slots.slice()? })
+    }
+}
+
+impl<'a, 'py, T: Element + Precision + InPanorama> World<'a, 'py, T> {
     pub fn of(given: &'a WorldTuple<'py>) -> PyResult<Self> {
-        let (_, [positions, faces, normals, ids], colors, [kinds, rows, emission], table, _) = given;
+        let (tree, [positions, faces, normals, ids], colors, [kinds, rows, emission], table, _, copies) =
+            given;
         let (positions, faces) = (In::of("positions", positions)?, In::of("faces", faces)?);
         let (ids, emission) = (In::<i32>::of("material_ids", ids)?, In::<T>::of("emission", emission)?);
-        let emitters =
-            Emitters::find::<T>(positions.items()?, faces.items()?, ids.slice()?, emission.items()?);
+        // Faces of copies emit nothing, and number materials for themselves.
+        let own = &faces.items()?[..tree.get().of::<T>()?.faces()];
+        let emitters = Emitters::find::<T>(positions.items()?, own, ids.slice()?, emission.items()?);
         Ok(World {
             given,
             positions,
@@ -54,14 +92,20 @@ impl<'a, 'py, T: Element + InTree + InPanorama> World<'a, 'py, T> {
             emission,
             lights: lights(table)?,
             emitters,
+            copies: copies.as_ref().map(Meshes::of).transpose()?,
         })
     }
 
-    pub fn surfaces(&self) -> PyResult<Surfaces<'_, T>> {
-        let (tree, .., (background, offset, sky)) = self.given;
+    pub fn copies(&self) -> PyResult<Option<Copies<'_, T>>> {
+        self.copies.as_ref().map(Meshes::copies).transpose()
+    }
+
+    pub fn surfaces<'b>(&'b self, copies: Option<&'b Copies<'b, T>>) -> PyResult<Surfaces<'b, T>> {
+        let (tree, .., (background, offset, sky), _) = self.given;
         let sky = sky.as_ref().map(|s| s.get().of::<T>()).transpose()?;
         Ok(Surfaces {
             bvh: tree.get().of::<T>()?,
+            copies,
             positions: self.positions.items()?,
             faces: self.faces.items()?,
             normals: Some(self.normals.items()?),
