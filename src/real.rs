@@ -91,6 +91,8 @@ pub trait Real:
     fn floor(self) -> Self;
     /// Lanes that hold integers in [0, 2^22], as integers.
     fn indices<S: Simd>(v: Self::V8<S>) -> [u32; 8];
+    /// y · width + x of such lanes, where the result has 32 bits.
+    fn places<S: Simd>(x: Self::V8<S>, y: Self::V8<S>, width: u32) -> [u32; 8];
     /// The nearest number towards +infinity.
     fn next_up(self) -> Self;
     /// The nearest number towards -infinity.
@@ -217,6 +219,21 @@ macro_rules! scalar {
                 let mut out = [0; 8];
                 for k in 0..8 {
                     out[k] = bits[k] as u32;
+                }
+                out
+            }
+            #[inline(always)]
+            fn places<S: Simd>(x: Self::V8<S>, y: Self::V8<S>, width: u32) -> [u32; 8] {
+                // As in `indices`.
+                let (x, y) = (x + (1u64 << $mantissa) as $t, y + (1u64 << $mantissa) as $t);
+                let (x, y): (<$v8<S> as SimdFloat<S>>::Bits, <$v8<S> as SimdFloat<S>>::Bits) =
+                    (x.bitcast(), y.bitcast());
+                let (x, y) = (x & ((1 << $mantissa) - 1), y & ((1 << $mantissa) - 1));
+                let place = y * $bits::from(width) + x;
+                let place = place.as_slice();
+                let mut out = [0; 8];
+                for k in 0..8 {
+                    out[k] = place[k] as u32;
                 }
                 out
             }

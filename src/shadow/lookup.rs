@@ -1,40 +1,34 @@
-//! What every lookup into a shadow map shares: the map, where a receiver falls in it, and the comparison.
+//! What every lookup into a shadow map shares: the map, and where a receiver falls in it.
 //!
 //! The light's frame has rows right, up, axis (the way in which light travels); depth is the distance along the axis.
-//! A texel's depth is compared with that of the receiver's own tangent plane *at the texel's centre*, so that a
-//! lit plane does not shadow itself however wide the filter (receiver plane bias in closed form; J. Isidoro, *Shadow
-//! Mapping: GPU-based Tips and Techniques*, GDC 2006). Over a perspective map the reciprocal of the plane's depth is
-//! affine in texels, over an orthographic one the depth itself: one comparison without a division in both.
-//!
-//! Slope-scaled and constant bias: W. Reeves, D. Salesin, R. Cook, *Rendering Antialiased Shadows with Depth Maps*,
-//! 1987; normal offset: D. Holbert, *Saying "Goodbye" to Shadow Acne*, GDC 2011.
 
-use crate::real::{Lanes, Real};
+use crate::real::Real;
 use crate::shadow::texels::Texels;
-use crate::simd::*;
 use crate::vec::Vec3;
 
-/// Taps are worked on in blocks of this many.
-pub const BLOCK: usize = 8;
+/// Receivers are worked on in lots of this many.
+pub const LOT: usize = 8;
 
 /// A depth map seen from a light. Row 0 is the top.
 #[derive(Clone, Copy)]
 pub struct Map<'a, T> {
     /// Depth along the axis at texel centres; infinite where nothing was hit.
-    depth: Texels<'a, T>,
-    width: usize,
+    pub(super) depth: Texels<'a, T>,
+    pub(super) width: usize,
     height: usize,
-    origin: Vec3<T>,
+    pub(super) origin: Vec3<T>,
     /// Unit vectors: right, up, axis.
-    frame: [Vec3<T>; 3],
+    pub(super) frame: [Vec3<T>; 3],
     /// The window's left and top, at unit depth (perspective) or in world units (orthographic).
-    corner: [T; 2],
+    pub(super) corner: [T; 2],
     /// Texels per unit of the window.
     pub scale: [T; 2],
     /// The window's units per texel.
-    texel: [T; 2],
+    pub(super) texel: [T; 2],
     /// The least depth of anything that casts a shadow.
     pub near: T,
+    /// The last texel across and down.
+    pub(super) last: [T; 2],
     /// Which map each receiver looks into, and which one this is; of several maps that share the work.
     chosen: Option<(&'a [u8], u8)>,
 }
@@ -72,6 +66,7 @@ impl<'a, T: Real> Map<'a, T> {
             scale,
             texel,
             near,
+            last: [T::of((width - 1) as f64), T::of((height - 1) as f64)],
             chosen: None,
         })
     }
@@ -90,11 +85,23 @@ impl<'a, T: Real> Map<'a, T> {
         }
     }
 
+    /// A bit for each of `n` receivers from `first` on that looks into this map.
+    #[inline(always)]
+    pub fn asks(&self, first: usize, n: usize) -> u64 {
+        let mut bits = (1 << n) - 1;
+        if self.chosen.is_some() {
+            for k in 0..n {
+                bits &= !(u64::from(self.skips(first + k)) << k);
+            }
+        }
+        bits
+    }
+
     /// Whether a place in texels lies on the map.
     #[inline(always)]
     pub fn holds(&self, x: T, y: T) -> bool {
         let zero = T::zero();
-        x >= zero && y >= zero && x < T::of(self.width as f64) && y < T::of(self.height as f64)
+        x >= zero && y >= zero && x < self.last[0] + T::one() && y < self.last[1] + T::one()
     }
 
     /// Whether the texel at a place on the map is stored at all.
@@ -118,7 +125,7 @@ impl<'a, T: Real> Map<'a, T> {
     /// The larger side of the map in texels.
     #[inline(always)]
     pub fn extent(&self) -> T {
-        T::of(self.width.max(self.height) as f64)
+        self.last[0].max(self.last[1]) + T::one()
     }
 }
 
@@ -132,15 +139,18 @@ pub fn at<T: Real>(normals: Option<&[[T; 3]]>, i: usize) -> Option<[T; 3]> {
     }
 }
 
+/// Units in the last place of coordinates that are granted to depths.
+pub(super) const ROUNDINGS: f64 = 16.0;
+
+/// The largest of a point's coordinates, by size.
+#[inline(always)]
+pub(super) fn largest<T: Real>([x, y, z]: [T; 3]) -> T {
+    x.abs().max(y.abs()).max(z.abs())
+}
+
 #[inline(always)]
 fn into_frame<T: Real>([right, up, axis]: [Vec3<T>; 3], v: Vec3<T>) -> Vec3<T> {
     Vec3::new(right.dot(v), up.dot(v), axis.dot(v))
-}
-
-/// The same number in all lanes. (Not a closure: those are not compiled for the level unless inlined.)
-#[inline(always)]
-pub fn all<T: Real, S: Simd>(s: S, v: T) -> T::V8<S> {
-    <T::V8<S> as SimdBase<S>>::splat(s, v)
 }
 
 /// The light's image on a plane at `blocker`, seen from a receiver at `depth` and projected into the map: its half
@@ -157,37 +167,6 @@ pub fn light_image<T: Real, const PERSPECTIVE: bool>(
     [light[0] * reach * map.scale[0], light[1] * reach * map.scale[1]]
 }
 
-/// What is granted to a receiver before it counts as shadowed.
-#[derive(Clone, Copy)]
-pub struct Bias<T> {
-    /// World units along the axis.
-    pub constant: T,
-    /// Texels: as much depth as the receiver's plane gains over them.
-    pub slope: T,
-    /// Texels: the receiver moves along its normal by them times the sine of the light's angle to it.
-    pub normal_offset: T,
-    /// Whether depths are compared with the receiver's plane, or with its one depth.
-    pub plane: bool,
-}
-
-/// A receiver as the map sees it: where it falls, and the plane that depths are compared with.
-#[derive(Clone, Copy)]
-pub struct Anchor<T> {
-    /// Texel coordinates.
-    pub x: T,
-    pub y: T,
-    pub depth: T,
-    /// The plane at (x, y): its reciprocal depth (perspective) or its depth less the bias (orthographic).
-    key: T,
-    /// The plane at the centre of texel (0, 0).
-    base: T,
-    /// Change of the plane per texel.
-    gx: T,
-    gy: T,
-    /// Perspective: depth times reciprocal plane depth below which a texel blocks.
-    limit: T,
-}
-
 /// Where a receiver falls in a map, and how its tangent plane lies there.
 #[derive(Clone, Copy)]
 pub struct Foot<T> {
@@ -198,6 +177,9 @@ pub struct Foot<T> {
     /// Change of the plane per texel: of its reciprocal depth (perspective) or of its depth.
     gx: T,
     gy: T,
+    /// Depth that may be nothing but rounding: a few units in the last place of the receiver's coordinates, of the
+    /// light's, and of the depth itself.
+    pub rounding: T,
 }
 
 impl<T: Real> Foot<T> {
@@ -257,89 +239,8 @@ impl<T: Real> Map<'_, T> {
                 (gx, gy) = (n.x * per * self.texel[0], -n.y * per * self.texel[1]);
             }
         }
-        Ok(Foot { x, y, depth: q.z, gx, gy })
-    }
-
-    /// A receiver as depths are compared with it; `Err` as in [`Map::foot`].
-    #[inline(always)]
-    pub fn anchor<const PERSPECTIVE: bool>(
-        &self,
-        point: [T; 3],
-        normal: Option<[T; 3]>,
-        bias: &Bias<T>,
-    ) -> Result<Anchor<T>, T> {
-        let Foot { x, y, depth, mut gx, mut gy } =
-            self.foot::<PERSPECTIVE>(point, normal, bias.normal_offset)?;
-        let (zero, one) = (T::zero(), T::one());
-        let steep = gx.abs() + gy.abs();
-        if !bias.plane {
-            (gx, gy) = (zero, zero);
-        }
-        // A few roundings of the depth itself are granted always.
-        let rounding = T::of(16.0) * T::EPSILON;
-        let (key, limit) = if PERSPECTIVE {
-            let inverse = one / depth;
-            (inverse, one - rounding - bias.constant * inverse - bias.slope * steep * depth)
-        } else {
-            (depth - (rounding * depth.abs() + bias.constant + bias.slope * steep), one)
-        };
-        let half = T::of(0.5);
-        let base = key + gx * (half - x) + gy * (half - y);
-        Ok(Anchor { x, y, depth, key, base, gx, gy, limit })
-    }
-
-    /// Depths of the texels at offsets (in texels) from a receiver, and a bit for each that blocks it.
-    ///
-    /// With `NEARER`, only what is also nearer to the light than the receiver blocks: right for blockers between a
-    /// receiver and an area light, where the plane may recede.
-    #[inline(always)]
-    pub fn taps<S: Simd, const PERSPECTIVE: bool, const NEARER: bool>(
-        &self,
-        s: S,
-        a: &Anchor<T>,
-        (ox, oy): (T::V8<S>, T::V8<S>),
-    ) -> (T::V8<S>, <T::V8<S> as SimdBase<S>>::Mask) {
-        let (x, y, zero) = (all::<T, S>(s, a.x), all::<T, S>(s, a.y), all::<T, S>(s, T::zero()));
-
-        // The receiver's plane at the texel's centre, where its depth was taken.
-        let (fx, fy) = (SimdFloat::floor(x + ox), SimdFloat::floor(y + oy));
-        let plane = all::<T, S>(s, a.base) + all::<T, S>(s, a.gx) * fx + all::<T, S>(s, a.gy) * fy;
-        // Where the plane's horizon is passed, it counts as far away.
-        let plane = match (PERSPECTIVE, NEARER) {
-            (true, true) => Lanes::max(plane, all::<T, S>(s, a.key)),
-            (true, false) => Lanes::max(plane, all::<T, S>(s, a.key * T::of(1e-3))),
-            (false, true) => Lanes::min(plane, all::<T, S>(s, a.key)),
-            (false, false) => plane,
-        };
-
-        // Texels, clamped to the map; NaN goes to 0.
-        let last_x = all::<T, S>(s, T::of((self.width - 1) as f64));
-        let last_y = all::<T, S>(s, T::of((self.height - 1) as f64));
-        let cx = Lanes::min(Lanes::max(fx, zero), last_x);
-        let cy = Lanes::min(Lanes::max(fy, zero), last_y);
-        let inside = cx.simd_eq(fx) & cy.simd_eq(fy);
-        let (ix, iy) = (T::indices::<S>(cx), T::indices::<S>(cy));
-        // SAFETY: both coordinates were clamped to the map, whose size `new` checked.
-        let depth = unsafe { self.depth.block(self.width, &ix, &iy) };
-        let depth =
-            inside.select(<T::V8<S> as SimdBase<S>>::load_array(s, depth), all::<T, S>(s, T::INFINITY));
-        let blocked =
-            if PERSPECTIVE { (depth * plane).simd_lt(all::<T, S>(s, a.limit)) } else { depth.simd_lt(plane) };
-        (depth, blocked)
-    }
-
-    /// The depth of the texel under a receiver if it blocks: one tap of [`Map::taps`].
-    #[inline(always)]
-    pub fn blocker_here<const PERSPECTIVE: bool>(&self, a: &Anchor<T>) -> Option<T> {
-        let (fx, fy) = (a.x.floor(), a.y.floor());
-        let size = [T::of(self.width as f64), T::of(self.height as f64)];
-        if !(fx >= T::zero() && fy >= T::zero() && fx < size[0] && fy < size[1]) {
-            return None;
-        }
-        let plane = a.base + a.gx * fx + a.gy * fy;
-        let depth = self.depth.at(self.width, fx.to_f64() as usize, fy.to_f64() as usize);
-        let blocks =
-            if PERSPECTIVE { depth * plane.max(a.key * T::of(1e-3)) < a.limit } else { depth < plane };
-        if blocks { Some(depth) } else { None }
+        let rounding = ROUNDINGS * T::EPSILON.to_f64();
+        let rounding = T::of(rounding) * (q.z.abs() + largest(point) + largest(self.origin.to_array()));
+        Ok(Foot { x, y, depth: q.z, gx, gy, rounding })
     }
 }

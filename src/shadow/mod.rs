@@ -10,10 +10,11 @@
 //! - [`variance_soft`](mod@variance_soft): the same, as wide as the blockers' mean depth asks for
 //! - [`ray_traced`](mod@ray_traced): rays to the light
 //!
-//! The parts: `lookup` (the map, the bias, and the taps that all filters share), `pattern` (where the taps of a filter
+//! The parts: `lookup` (the map, and where receivers fall), `anchor` (the bias, and the taps that filters share), `pattern` (where the taps of a filter
 //! lie), `texels` (what depths are stored as), `filtered` (means of moments over a part of a map), `tested` (the bounds,
 //! and lookups by any of them), `fit` (what a map's window must hold).
 
+pub(crate) mod anchor;
 pub mod cascades;
 pub mod distance_field;
 pub mod exponential_variance;

@@ -11,7 +11,8 @@
 //! - Grid: the centres of n × n cells, shifted within a cell.
 
 use crate::real::{Lanes, Real};
-use crate::shadow::lookup::{BLOCK, all};
+use crate::shadow::anchor::{all, lanes};
+use crate::shadow::lookup::LOT;
 use crate::simd::*;
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -39,11 +40,10 @@ const SECTION: f64 = 0.618_033_988_749_894_9;
 const TURNS: usize = 256;
 const STEP: (f64, f64) = (0.999_698_818_696_204_2, 0.024_541_228_522_912_288);
 
-/// Points of a filter, in blocks; the last one is padded.
+/// Points of a filter.
 pub struct Pattern<T> {
     kind: Kind,
-    x: Vec<[T; BLOCK]>,
-    y: Vec<[T; BLOCK]>,
+    points: Vec<[T; 2]>,
     turns: Vec<[T; 2]>,
     /// Twice the period of a shift: the side of the square, or of a grid's cell.
     cell: T,
@@ -51,9 +51,9 @@ pub struct Pattern<T> {
     pub samples: usize,
 }
 
-/// How one receiver moves the points: a turn's cosine and sine, or a shift.
+/// How a lot of receivers move the points: a matrix in rows, or a shift and half sides.
 #[derive(Clone, Copy)]
-pub struct Turn<T>(T, T);
+pub struct Turn<V>(V, V, V, V);
 
 impl<T: Real> Pattern<T> {
     /// `samples` points; for a grid the nearest square number not above it. Without a `seed` every receiver has the
@@ -67,72 +67,68 @@ impl<T: Real> Pattern<T> {
             Kind::Poisson => apart(samples),
             Kind::Grid => grid(side),
         };
-        let n = points.len();
-        let block = |i: usize, f: &dyn Fn((f64, f64)) -> f64| {
-            std::array::from_fn(|k| points.get(i * BLOCK + k).map_or(T::zero(), |&p| T::of(f(p))))
-        };
-        let blocks = n.div_ceil(BLOCK);
         Pattern {
             kind,
-            x: (0..blocks).map(|i| block(i, &|p| p.0)).collect(),
-            y: (0..blocks).map(|i| block(i, &|p| p.1)).collect(),
+            samples: points.len(),
+            points: points.into_iter().map(|(x, y)| [T::of(x), T::of(y)]).collect(),
             turns: turns(TURNS, STEP).map(|(c, s)| [T::of(c), T::of(s)]).collect(),
             cell: T::of(if kind == Kind::Grid { 2.0 / side as f64 } else { 2.0 }),
             seed,
-            samples: n,
         }
     }
 
+    /// The moves of receivers from `index` on, in a filter of the given half sides; `stream` tells filters of one
+    /// receiver apart.
     #[inline(always)]
-    pub fn blocks(&self) -> usize {
-        self.x.len()
-    }
-
-    /// The move of receiver `index`; `stream` tells filters of one receiver apart.
-    #[inline(always)]
-    pub fn turn(&self, index: u64, stream: u64) -> Turn<T> {
-        let Some(seed) = self.seed else {
-            return if self.kind.turns() { Turn(T::one(), T::zero()) } else { Turn(T::zero(), T::zero()) };
-        };
-        let bits = mix(seed ^ mix(2 * index + stream));
-        if self.kind.turns() {
-            let [c, s] = self.turns[bits as usize % TURNS];
-            Turn(c, s)
-        } else {
-            // Centred: from minus to plus half a cell.
-            Turn(centred::<T>(bits) * self.cell, centred::<T>(bits >> 16) * self.cell)
-        }
-    }
-
-    /// Offsets of one block of points in a filter of the given half sides.
-    #[inline(always)]
-    pub fn offsets<S: Simd>(
+    pub fn turn<S: Simd>(
         &self,
         s: S,
-        block: usize,
-        Turn(a, b): Turn<T>,
-        half: [T; 2],
-    ) -> (T::V8<S>, T::V8<S>) {
-        let x = <T::V8<S> as SimdBase<S>>::load_array_ref(s, &self.x[block]);
-        let y = <T::V8<S> as SimdBase<S>>::load_array_ref(s, &self.y[block]);
-        let (a, b) = (all::<T, S>(s, a), all::<T, S>(s, b));
+        index: u64,
+        stream: u64,
+        [half_x, half_y]: [T::V8<S>; 2],
+    ) -> Turn<T::V8<S>> {
+        let (mut a, mut b) = ([T::zero(); LOT], [T::zero(); LOT]);
+        if self.kind.turns() {
+            a = [T::one(); LOT];
+        }
+        if let Some(seed) = self.seed {
+            for k in 0..LOT {
+                let bits = mix(seed ^ mix((2 * index + stream).wrapping_add(2 * k as u64)));
+                (a[k], b[k]) = if self.kind.turns() {
+                    let [c, s] = self.turns[bits as usize % TURNS];
+                    (c, s)
+                } else {
+                    // Centred: from minus to plus half a cell.
+                    (centred::<T>(bits) * self.cell, centred::<T>(bits >> 16) * self.cell)
+                };
+            }
+        }
+        let (a, b) = (lanes::<T, S>(s, a), lanes::<T, S>(s, b));
+        if self.kind.turns() {
+            Turn(a * half_x, b * half_x, b * half_y, a * half_y)
+        } else {
+            Turn(a, b, half_x, half_y)
+        }
+    }
+
+    /// Offsets of one point for all receivers of a lot.
+    #[inline(always)]
+    pub fn offsets<S: Simd>(&self, s: S, point: usize, turn: &Turn<T::V8<S>>) -> (T::V8<S>, T::V8<S>) {
+        let [x, y] = self.points[point];
+        let (x, y) = (all::<T, S>(s, x), all::<T, S>(s, y));
+        let Turn(a, b, c, d) = *turn;
+        if self.kind.turns() {
+            return (a * x - b * y, c * x + d * y);
+        }
         let (x, y) = match self.kind {
-            Kind::Vogel | Kind::Poisson => (a * x - b * y, b * x + a * y),
             Kind::Grid => (x + a, y + b),
-            Kind::Box => (wrapped::<T, S>(s, x + a), wrapped::<T, S>(s, y + b)),
             Kind::Tent => {
                 let (x, y) = (wrapped::<T, S>(s, x + a), wrapped::<T, S>(s, y + b));
                 (tent::<T, S>(s, x), tent::<T, S>(s, y))
             }
+            _ => (wrapped::<T, S>(s, x + a), wrapped::<T, S>(s, y + b)),
         };
-        (x * all::<T, S>(s, half[0]), y * all::<T, S>(s, half[1]))
-    }
-
-    /// A bit for every point of a block that is not padding.
-    #[inline(always)]
-    pub fn active(&self, block: usize) -> u64 {
-        let left = self.samples - block * BLOCK;
-        if left >= BLOCK { (1 << BLOCK) - 1 } else { (1 << left) - 1 }
+        (x * c, y * d)
     }
 }
 

@@ -4,8 +4,9 @@
 
 use crate::dispatch;
 use crate::parallel::{self, Interrupted, Watch};
-use crate::real::Real;
-use crate::shadow::lookup::{Anchor, Bias, Map, all, at};
+use crate::real::{Lanes, Real};
+use crate::shadow::anchor::{Anchor, Bias, all, or_answer, put};
+use crate::shadow::lookup::{LOT, Map};
 use crate::shadow::pattern::{Pattern, Turn};
 use crate::simd::*;
 
@@ -29,7 +30,7 @@ pub fn pcf<T: Real, const PERSPECTIVE: bool>(
     bias: &Bias<T>,
     out: &mut [T],
 ) -> Result<(), Interrupted> {
-    let piece = ((1 << 18) / pattern.samples).clamp(1, 1 << 13);
+    let piece = ((1 << 18) / pattern.samples).clamp(1, 1 << 13).next_multiple_of(LOT);
     parallel::for_each(
         watch,
         (receivers, normals, out),
@@ -51,53 +52,57 @@ fn body<T: Real, S: Simd, const PERSPECTIVE: bool>(
     bias: &Bias<T>,
     out: &mut [T],
 ) {
-    for i in 0..out.len() {
-        if map.skips(first + i) {
-            continue;
+    let mut i = 0;
+    while i < out.len() {
+        let asked = map.asks(first + i, LOT.min(out.len() - i));
+        if asked != 0 {
+            let a = map.anchor::<S, PERSPECTIVE>(s, points, normals, i, bias);
+            let [x, y] = [all::<T, S>(s, map.scale[0]), all::<T, S>(s, map.scale[1])];
+            let half = match radius {
+                Radius::Texels(r) => [all::<T, S>(s, r); 2],
+                Radius::World(r) => {
+                    let r = all::<T, S>(s, r);
+                    let r = if PERSPECTIVE { r / a.depth } else { r };
+                    [r * x, r * y]
+                }
+            };
+            let half = limited::<T, S>(s, map, half);
+            let turn = pattern.turn(s, (first + i) as u64, 0, half);
+            let lit = if bilinear {
+                between::<T, S, PERSPECTIVE>(s, map, &a, pattern, &turn)
+            } else {
+                lit_fraction::<T, S, PERSPECTIVE, false>(s, map, &a, pattern, &turn)
+            };
+            put::<T, S>(out, i, asked, or_answer::<T, S>(s, &a, lit));
         }
-        let a = match map.anchor::<PERSPECTIVE>(points[i], at(normals, i), bias) {
-            Ok(a) => a,
-            Err(answer) => {
-                out[i] = answer;
-                continue;
-            }
-        };
-        let half = match radius {
-            Radius::Texels(r) => [r; 2],
-            Radius::World(r) => {
-                let r = if PERSPECTIVE { r / a.depth } else { r };
-                [r * map.scale[0], r * map.scale[1]]
-            }
-        };
-        let turn = pattern.turn((first + i) as u64, 0);
-        out[i] = if bilinear {
-            between::<T, S, PERSPECTIVE>(s, map, &a, pattern, turn, half)
-        } else {
-            lit_fraction::<T, S, PERSPECTIVE, false>(s, map, &a, pattern, turn, half)
-        };
+        i += LOT;
     }
 }
 
-/// The share of taps that do not block, over a filter of half sides `half` in texels.
+/// Filters beyond twice the map's extent see nothing more.
+#[inline(always)]
+pub fn limited<T: Real, S: Simd>(s: S, map: &Map<'_, T>, [x, y]: [T::V8<S>; 2]) -> [T::V8<S>; 2] {
+    let limit = all::<T, S>(s, map.extent() + map.extent());
+    [Lanes::min(x, limit), Lanes::min(y, limit)]
+}
+
+/// The share of taps that do not block.
 #[inline(always)]
 pub fn lit_fraction<T: Real, S: Simd, const PERSPECTIVE: bool, const NEARER: bool>(
     s: S,
     map: &Map<'_, T>,
-    anchor: &Anchor<T>,
+    anchor: &Anchor<T::V8<S>>,
     pattern: &Pattern<T>,
-    turn: Turn<T>,
-    half: [T; 2],
-) -> T {
-    // Filters beyond twice the map's extent see nothing more.
-    let limit = map.extent() + map.extent();
-    let half = [half[0].min(limit), half[1].min(limit)];
-    let mut count = 0;
-    for block in 0..pattern.blocks() {
-        let offsets = pattern.offsets(s, block, turn, half);
-        let (_, blocked) = map.taps::<S, PERSPECTIVE, NEARER>(s, anchor, offsets);
-        count += (blocked.to_bitmask() & pattern.active(block)).count_ones();
+    turn: &Turn<T::V8<S>>,
+) -> T::V8<S> {
+    let (zero, one) = (all::<T, S>(s, T::zero()), all::<T, S>(s, T::one()));
+    let mut count = zero;
+    for point in 0..pattern.samples {
+        let offsets = pattern.offsets(s, point, turn);
+        let (_, blocked) = map.tap::<S, PERSPECTIVE, NEARER>(s, anchor, offsets);
+        count += blocked.select(one, zero);
     }
-    T::one() - T::of(f64::from(count)) / T::of(pattern.samples as f64)
+    one - count / all::<T, S>(s, T::of(pattern.samples as f64))
 }
 
 /// The same with taps between texels: a mean of comparisons that moves smoothly with the receiver.
@@ -105,38 +110,29 @@ pub fn lit_fraction<T: Real, S: Simd, const PERSPECTIVE: bool, const NEARER: boo
 fn between<T: Real, S: Simd, const PERSPECTIVE: bool>(
     s: S,
     map: &Map<'_, T>,
-    anchor: &Anchor<T>,
+    anchor: &Anchor<T::V8<S>>,
     pattern: &Pattern<T>,
-    turn: Turn<T>,
-    half: [T; 2],
-) -> T {
-    let limit = map.extent() + map.extent();
-    let half = [half[0].min(limit), half[1].min(limit)];
-    let (zero, one, middle) =
-        (all::<T, S>(s, T::zero()), all::<T, S>(s, T::one()), all::<T, S>(s, T::of(0.5)));
-    let (x, y) = (all::<T, S>(s, anchor.x), all::<T, S>(s, anchor.y));
+    turn: &Turn<T::V8<S>>,
+) -> T::V8<S> {
+    let (zero, one) = (all::<T, S>(s, T::zero()), all::<T, S>(s, T::one()));
+    let middle = all::<T, S>(s, T::of(0.5));
+    let (x, y) = (anchor.x, anchor.y);
     let mut sums = zero;
-    for block in 0..pattern.blocks() {
-        let (ox, oy) = pattern.offsets(s, block, turn, half);
+    for point in 0..pattern.samples {
+        let (ox, oy) = pattern.offsets(s, point, turn);
         let (px, py) = (x + ox - middle, y + oy - middle);
         let (ix, iy) = (SimdFloat::floor(px), SimdFloat::floor(py));
         let (fx, fy) = (px - ix, py - iy);
         // To the centres of the four texels.
         let (cx, cy) = (ix + middle - x, iy + middle - y);
-        let padding =
-            <<T::V8<S> as SimdBase<S>>::Mask as SimdMask<S>>::from_bitmask(s, pattern.active(block));
         for corner in 0..4 {
             let (right, down) = (corner & 1 == 1, corner & 2 == 2);
             let (dx, wx) = if right { (cx + one, fx) } else { (cx, one - fx) };
             let (dy, wy) = if down { (cy + one, fy) } else { (cy, one - fy) };
-            let (_, blocked) = map.taps::<S, PERSPECTIVE, false>(s, anchor, (dx, dy));
-            sums += (blocked & padding).select(wx * wy, zero);
+            let (_, blocked) = map.tap::<S, PERSPECTIVE, false>(s, anchor, (dx, dy));
+            sums += blocked.select(wx * wy, zero);
         }
     }
-    let mut sum = T::zero();
-    for &lane in sums.as_slice() {
-        sum += lane;
-    }
     // Rounding of the weights must not make more than all of it dark.
-    (T::one() - sum / T::of(pattern.samples as f64)).max(T::zero())
+    Lanes::max(one - sums / all::<T, S>(s, T::of(pattern.samples as f64)), zero)
 }

@@ -13,9 +13,10 @@
 use crate::dispatch;
 use crate::parallel::{self, Interrupted, Watch};
 use crate::real::{Lanes, Real};
-use crate::shadow::lookup::{Anchor, Bias, Map, all, at, light_image};
+use crate::shadow::anchor::{Anchor, Bias, Mask, all, mask, or_answer, put};
+use crate::shadow::lookup::{LOT, Map};
 use crate::shadow::pattern::{Pattern, Turn};
-use crate::shadow::pcf::lit_fraction;
+use crate::shadow::pcf::{limited, lit_fraction};
 use crate::simd::*;
 
 /// The knobs; `light` is the light's sides along the map's right and up: in world units for a perspective map, as
@@ -32,15 +33,15 @@ pub struct Knobs<'a, T> {
 /// What else the caller may want, each as long as the receivers.
 pub type Intermediates<'a, T> = (&'a mut [T], &'a mut [T], &'a mut [T]);
 
-/// What one receiver found.
-struct Found<T> {
-    lit: T,
+/// What a lot of receivers found.
+struct Found<V> {
+    lit: V,
     /// Mean depth of the blockers; NaN without any.
-    blocker: T,
+    blocker: V,
     /// Width in world units along the larger side of the light; 0 without blockers.
-    penumbra: T,
+    penumbra: V,
     /// Half the larger side of the search region, in texels.
-    search: T,
+    search: V,
 }
 
 /// The lit fraction of every receiver; blocker depth, penumbra width and search radius beside it if wanted.
@@ -54,6 +55,7 @@ pub fn pcss<T: Real, const PERSPECTIVE: bool>(
     more: Option<Intermediates<'_, T>>,
 ) -> Result<(), Interrupted> {
     let piece = ((1 << 18) / (knobs.search.samples + knobs.filter.samples)).clamp(1, 1 << 13);
+    let piece = piece.next_multiple_of(LOT);
     parallel::for_each(
         watch,
         (receivers, normals, out, more),
@@ -73,112 +75,135 @@ fn body<T: Real, S: Simd, const PERSPECTIVE: bool>(
     out: &mut [T],
     mut more: Option<Intermediates<'_, T>>,
 ) {
-    for i in 0..out.len() {
-        if map.skips(first + i) {
-            continue;
-        }
-        let found = match map.anchor::<PERSPECTIVE>(points[i], at(normals, i), &knobs.bias) {
-            Ok(a) => receiver::<T, S, PERSPECTIVE>(s, map, &a, knobs, (first + i) as u64),
-            Err(answer) if answer.is_nan() => {
-                Found { lit: answer, blocker: answer, penumbra: answer, search: answer }
+    let (zero, nan) = (all::<T, S>(s, T::zero()), all::<T, S>(s, T::NAN));
+    let mut i = 0;
+    while i < out.len() {
+        let asked = map.asks(first + i, LOT.min(out.len() - i));
+        if asked != 0 {
+            let a = map.anchor::<S, PERSPECTIVE>(s, points, normals, i, &knobs.bias);
+            let found = receivers::<T, S, PERSPECTIVE>(s, map, &a, knobs, (first + i) as u64);
+            put::<T, S>(out, i, asked, or_answer::<T, S>(s, &a, found.lit));
+            if let Some((blocker, penumbra, search)) = &mut more {
+                // NaN of NaN, nothing behind the light.
+                let live = mask::<T, S>(s, a.live);
+                let nothing = a.answer.simd_eq(a.answer).select(zero, nan);
+                put::<T, S>(blocker, i, asked, live.select(found.blocker, nan));
+                put::<T, S>(penumbra, i, asked, live.select(found.penumbra, nothing));
+                put::<T, S>(search, i, asked, live.select(found.search, nothing));
             }
-            Err(answer) => Found { lit: answer, blocker: T::NAN, penumbra: T::zero(), search: T::zero() },
-        };
-        out[i] = found.lit;
-        if let Some((blocker, penumbra, search)) = &mut more {
-            (blocker[i], penumbra[i], search[i]) = (found.blocker, found.penumbra, found.search);
         }
+        i += LOT;
     }
 }
 
+/// The light's image on a plane at the blocker: see [`crate::shadow::lookup::light_image`].
 #[inline(always)]
-fn receiver<T: Real, S: Simd, const PERSPECTIVE: bool>(
+fn light_image<T: Real, S: Simd, const PERSPECTIVE: bool>(
     s: S,
     map: &Map<'_, T>,
-    a: &Anchor<T>,
+    depth: T::V8<S>,
+    light: [T; 2],
+    blocker: T::V8<S>,
+) -> [T::V8<S>; 2] {
+    let one = all::<T, S>(s, T::one());
+    let reach = if PERSPECTIVE { one / blocker - one / depth } else { depth - blocker };
+    let reach = Lanes::max(reach, all::<T, S>(s, T::zero())) * all::<T, S>(s, T::of(0.5));
+    let (x, y) = (light[0] * map.scale[0], light[1] * map.scale[1]);
+    limited::<T, S>(s, map, [reach * all::<T, S>(s, x), reach * all::<T, S>(s, y)])
+}
+
+#[inline(always)]
+fn receivers<T: Real, S: Simd, const PERSPECTIVE: bool>(
+    s: S,
+    map: &Map<'_, T>,
+    a: &Anchor<T::V8<S>>,
     knobs: &Knobs<'_, T>,
     index: u64,
-) -> Found<T> {
+) -> Found<T::V8<S>> {
+    let (zero, one) = (all::<T, S>(s, T::zero()), all::<T, S>(s, T::one()));
+    let nan = all::<T, S>(s, T::NAN);
     // Blocker search.
-    let limit = map.extent() + map.extent();
-    let half = light_image::<T, PERSPECTIVE>(map, a.depth, knobs.light, map.near);
-    let half = [half[0].min(limit), half[1].min(limit)];
-    let search = half[0].max(half[1]);
-    let turn = knobs.search.turn(index, 0);
-    let (count, mut blocker) = mean_blocker::<T, S, PERSPECTIVE>(s, map, a, knobs, turn, half);
-    if count == 0 {
+    let half = light_image::<T, S, PERSPECTIVE>(s, map, a.depth, knobs.light, all::<T, S>(s, map.near));
+    let search = Lanes::max(half[0], half[1]);
+    let turn = knobs.search.turn(s, index, 0, half);
+    let (count, sum) = blockers::<T, S, PERSPECTIVE>(s, map, a, knobs, &turn);
+    let mut blocker = sum / count;
+    let none = count.simd_eq(zero);
+    if none.to_bitmask() & a.live != 0 {
         // Few samples of a wide region may all miss what hides the light's centre: then that alone counts.
-        blocker = match map.blocker_here::<PERSPECTIVE>(a) {
-            Some(depth) => depth,
-            None => return Found { lit: T::one(), blocker: T::NAN, penumbra: T::zero(), search },
-        };
+        let (depth, blocked) = map.tap::<S, PERSPECTIVE, false>(s, a, (zero, zero));
+        blocker = none.select(blocked.select(depth, nan), blocker);
+    }
+    let found = blocker.simd_eq(blocker);
+    if found.to_bitmask() & a.live == 0 {
+        return Found { lit: one, blocker: nan, penumbra: zero, search };
     }
 
     // Penumbra by similar triangles, and the filter.
     let ratio = if PERSPECTIVE { (a.depth - blocker) / blocker } else { a.depth - blocker };
-    let penumbra = ratio.max(T::zero()) * knobs.light[0].max(knobs.light[1]);
-    let turn = knobs.filter.turn(index, 1);
-    let half = light_image::<T, PERSPECTIVE>(map, a.depth, knobs.light, blocker);
-    let lit = lit_fraction::<T, S, PERSPECTIVE, true>(s, map, a, knobs.filter, turn, half);
-    Found { lit, blocker, penumbra, search }
+    let penumbra = Lanes::max(ratio, zero) * all::<T, S>(s, knobs.light[0].max(knobs.light[1]));
+    let half = light_image::<T, S, PERSPECTIVE>(s, map, a.depth, knobs.light, blocker);
+    let turn = knobs.filter.turn(s, index, 1, half);
+    let lit = lit_fraction::<T, S, PERSPECTIVE, true>(s, map, a, knobs.filter, &turn);
+    Found { lit: found.select(lit, one), blocker, penumbra: found.select(penumbra, zero), search }
 }
 
-/// How many taps block, and their mean depth.
+/// How many taps block, and the sum of their depths.
 #[inline(always)]
-fn mean_blocker<T: Real, S: Simd, const PERSPECTIVE: bool>(
+fn blockers<T: Real, S: Simd, const PERSPECTIVE: bool>(
     s: S,
     map: &Map<'_, T>,
-    a: &Anchor<T>,
+    a: &Anchor<T::V8<S>>,
     knobs: &Knobs<'_, T>,
-    turn: Turn<T>,
-    half: [T; 2],
-) -> (u32, T) {
-    let pattern = knobs.search;
-    let mut count = 0;
-    // One sum a lane, so that its order is the same at every SIMD level.
-    let mut sums = all::<T, S>(s, T::zero());
-    for block in 0..pattern.blocks() {
-        let offsets = pattern.offsets(s, block, turn, half);
-        let (depth, blocked) = map.taps::<S, PERSPECTIVE, true>(s, a, offsets);
-        let active = pattern.active(block);
+    turn: &Turn<T::V8<S>>,
+) -> (T::V8<S>, T::V8<S>) {
+    let (zero, one) = (all::<T, S>(s, T::zero()), all::<T, S>(s, T::one()));
+    let sides = frustum::<T, S, PERSPECTIVE>(s, map, a, knobs.light);
+    let (mut count, mut sum) = (zero, zero);
+    for point in 0..knobs.search.samples {
+        let offsets = knobs.search.offsets(s, point, turn);
+        let (depth, blocked) = map.tap::<S, PERSPECTIVE, true>(s, a, offsets);
         let blocked = if knobs.frustum {
-            blocked & in_frustum::<T, S, PERSPECTIVE>(s, map, a, knobs.light, offsets, depth)
+            blocked & in_frustum::<T, S, PERSPECTIVE>(sides, offsets, depth)
         } else {
             blocked
         };
-        let blocked = blocked & <<T::V8<S> as SimdBase<S>>::Mask as SimdMask<S>>::from_bitmask(s, active);
-        count += blocked.to_bitmask().count_ones();
-        sums += blocked.select(depth, all::<T, S>(s, T::zero()));
+        count += blocked.select(one, zero);
+        sum += blocked.select(depth, zero);
     }
-    let mut sum = T::zero();
-    for &lane in sums.as_slice() {
-        sum += lane;
-    }
-    (count, sum / T::of(f64::from(count)))
+    (count, sum)
 }
 
-/// Whether texels at offsets and depths lie between the receiver and the light's sides, by half a texel at least.
+/// What tells whether texels at offsets and depths lie between receivers and the light's sides, by half a texel at
+/// least: |o| <= (1/z − 1/d) c + 1/2, or (d − z) c + 1/2, without a division. z is positive, and infinite only where
+/// nothing blocks.
 #[inline(always)]
-fn in_frustum<T: Real, S: Simd, const PERSPECTIVE: bool>(
+fn frustum<T: Real, S: Simd, const PERSPECTIVE: bool>(
     s: S,
     map: &Map<'_, T>,
-    a: &Anchor<T>,
+    a: &Anchor<T::V8<S>>,
     light: [T; 2],
-    (ox, oy): (T::V8<S>, T::V8<S>),
-    depth: T::V8<S>,
-) -> <T::V8<S> as SimdBase<S>>::Mask {
-    // |o| <= (1/z - 1/d) c + 1/2, or (d - z) c + 1/2, without a division: z is positive, and infinite only where nothing
-    // blocks.
+) -> [[T::V8<S>; 2]; 2] {
     let half = T::of(0.5);
     let (cx, cy) = (light[0] * map.scale[0] * half, light[1] * map.scale[1] * half);
+    let (cx, cy, half) = (all::<T, S>(s, cx), all::<T, S>(s, cy), all::<T, S>(s, half));
+    if PERSPECTIVE {
+        [[cx, cx / a.depth - half], [cy, cy / a.depth - half]]
+    } else {
+        [[cx, cx * a.depth + half], [cy, cy * a.depth + half]]
+    }
+}
+
+#[inline(always)]
+fn in_frustum<T: Real, S: Simd, const PERSPECTIVE: bool>(
+    [[cx, kx], [cy, ky]]: [[T::V8<S>; 2]; 2],
+    (ox, oy): (T::V8<S>, T::V8<S>),
+    depth: T::V8<S>,
+) -> Mask<T, S> {
     let (ox, oy) = (Lanes::abs(ox), Lanes::abs(oy));
     if PERSPECTIVE {
-        let (kx, ky) = (cx / a.depth - half, cy / a.depth - half);
-        ((ox + all::<T, S>(s, kx)) * depth).simd_le(all::<T, S>(s, cx))
-            & ((oy + all::<T, S>(s, ky)) * depth).simd_le(all::<T, S>(s, cy))
+        ((ox + kx) * depth).simd_le(cx) & ((oy + ky) * depth).simd_le(cy)
     } else {
-        let (kx, ky) = (cx * a.depth + half, cy * a.depth + half);
-        (ox + depth * all::<T, S>(s, cx)).simd_le(all::<T, S>(s, kx))
-            & (oy + depth * all::<T, S>(s, cy)).simd_le(all::<T, S>(s, ky))
+        (ox + depth * cx).simd_le(kx) & (oy + depth * cy).simd_le(ky)
     }
 }

@@ -83,7 +83,7 @@ pub fn tested<T: Real, E: Stored, const C: usize>(
 ) -> Found<T> {
     let moments = filtered.mean_powers(foot.x, foot.y, half);
     let slope = granted.slope * (gain[0] * half[0] + gain[1] * half[1]);
-    let t = filtered.warp.of(foot.depth - granted.constant - slope);
+    let t = filtered.warp.of(foot.depth - (foot.rounding + granted.constant + slope));
     Found { lit: test.lit(moments, t), moments, t }
 }
 

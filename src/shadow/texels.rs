@@ -1,7 +1,9 @@
 //! What a shadow map's depths are stored as: numbers, integers of equal steps, or pages of which only some are there.
 
 use crate::real::Real;
-use crate::shadow::lookup::BLOCK;
+use crate::shadow::anchor::lanes;
+use crate::shadow::lookup::LOT;
+use crate::simd::*;
 
 /// From stored integers to depth: `low + step · q`; from `nothing` on, nothing was hit.
 #[derive(Clone, Copy, Debug)]
@@ -116,39 +118,28 @@ impl<T: Real> Texels<'_, T> {
     /// # Safety
     /// All must lie in the map, which [`Texels::fill`] must have found to be full.
     #[inline(always)]
-    pub unsafe fn block(&self, width: usize, ix: &[u32; BLOCK], iy: &[u32; BLOCK]) -> [T; BLOCK] {
-        let mut depth = [T::zero(); BLOCK];
-        let width = width as u32;
-        match self {
-            Texels::Real(d) => {
-                for k in 0..BLOCK {
-                    let at = iy[k].wrapping_mul(width).wrapping_add(ix[k]) as usize;
-                    // SAFETY: the caller's promise.
-                    depth[k] = unsafe { *d.get_unchecked(at) };
-                }
-            }
-            Texels::Short(d, steps) => {
-                for k in 0..BLOCK {
-                    let at = iy[k].wrapping_mul(width).wrapping_add(ix[k]) as usize;
-                    // SAFETY: the caller's promise.
-                    depth[k] = steps.depth(u32::from(unsafe { *d.get_unchecked(at) }));
-                }
-            }
-            Texels::Long(d, steps) => {
-                for k in 0..BLOCK {
-                    let at = iy[k].wrapping_mul(width).wrapping_add(ix[k]) as usize;
-                    // SAFETY: the caller's promise.
-                    depth[k] = steps.depth(unsafe { *d.get_unchecked(at) });
-                }
-            }
-            Texels::Paged(p) => {
-                for k in 0..BLOCK {
-                    depth[k] = match p.place(ix[k], iy[k]) {
-                        Some(at) => p.pages[at],
-                        None => T::INFINITY,
-                    };
-                }
-            }
+    pub unsafe fn lot<S: Simd>(&self, s: S, width: usize, x: T::V8<S>, y: T::V8<S>) -> T::V8<S> {
+        let Texels::Real(d) = self else {
+            let (x, y) = (T::indices::<S>(x), T::indices::<S>(y));
+            return lanes::<T, S>(s, self.decoded(width, &x, &y));
+        };
+        let at = T::places::<S>(x, y, width as u32);
+        // Written out: an array that is filled in a loop passes through memory, and is waited for.
+        macro_rules! each {
+            ($($k:literal)+) => {
+                // SAFETY: the caller's promise.
+                [$(unsafe { *d.get_unchecked(at[$k] as usize) }),+]
+            };
+        }
+        lanes::<T, S>(s, each!(0 1 2 3 4 5 6 7))
+    }
+
+    /// The same of what is stored otherwise; apart, so that it takes no registers from the usual case.
+    #[inline(never)]
+    fn decoded(&self, width: usize, ix: &[u32; LOT], iy: &[u32; LOT]) -> [T; LOT] {
+        let mut depth = [T::zero(); LOT];
+        for k in 0..LOT {
+            depth[k] = self.at(width, ix[k] as usize, iy[k] as usize);
         }
         depth
     }

@@ -1,6 +1,6 @@
 """Shadow lookups at 1280 x 720 with a map of 2048², beside the same filters in GLSL on Mesa llvmpipe (moderngl, EGL).
 
-`LP_NUM_THREADS=2 python tests/benchmarks/shadow.py [threads]`
+`LP_NUM_THREADS=2 python tests/benchmarks/shadow.py [threads]`; medians of wall and of processor time, all threads' together
 
 Both look up the same receivers in the same map with the same points, turned by a hash of the pixel; ours also follows
 the receiver's plane. Receivers and map are resident in both; the lit fractions arrive in an array. Rounds alternate.
@@ -9,7 +9,7 @@ the receiver's plane. Receivers and map are resident in both; the lit fractions 
 import os
 import statistics
 import sys
-from time import perf_counter
+from time import perf_counter, process_time
 
 import numpy as np
 import shadelab as sl
@@ -126,17 +126,20 @@ def main(rounds=9):
     times = {(who, name): [] for who, group in (("ours", ours), ("llvmpipe", theirs)) for name in group}
     for _ in range(rounds + 2):
         for (who, name), list_ in times.items():
-            start = perf_counter()
+            start, worked = perf_counter(), process_time()
             (ours if who == "ours" else theirs)[name]()
-            list_.append(perf_counter() - start)
+            list_.append((perf_counter() - start, process_time() - worked))
     reads = {"hard": 1, "pcf 16": 16, "pcf 64": 64, "pcss 16+32": 48}
-    print(f"{'':12} {'ours ms':>9} {'ns/read':>8} {'llvmpipe':>9} {'ratio':>6} {'mean lit, both':>16}")
+    print(
+        f"{'':12} {'ours ms':>9} {'cpu':>7} {'ns/read':>8} {'llvmpipe':>9} {'cpu':>7} {'ratio':>6} {'cpu':>5}   mean lit"
+    )
     for name in ours:
-        mine = statistics.median(times["ours", name][2:])
-        line = f"{name:12} {mine * 1e3:9.1f} {mine / points[..., 0].size / reads[name] * 1e9:8.2f}"
+        wall, cpu = (statistics.median(t) * 1e3 for t in zip(*times["ours", name][2:], strict=True))
+        line = f"{name:12} {wall:9.1f} {cpu:7.1f} {cpu * 1e6 / points[..., 0].size / reads[name]:8.2f}"
         if name in theirs:
-            other = statistics.median(times["llvmpipe", name][2:])
-            line += f" {other * 1e3:9.1f} {other / mine:6.2f} {ours[name]().mean():8.4f} {theirs[name]().mean():7.4f}"
+            other, busy = (statistics.median(t) * 1e3 for t in zip(*times["llvmpipe", name][2:], strict=True))
+            line += f" {other:9.1f} {busy:7.1f} {other / wall:6.2f} {busy / cpu:5.2f}"
+            line += f"   {ours[name]().mean():.4f} {theirs[name]().mean():.4f}"
         print(line)
 
 

@@ -85,8 +85,7 @@ def _looked_up(
     """
 
     def one(m: Any, chosen: Any, to: Sequence[Floats]) -> None:
-        # Half a step of what is stored is granted always.
-        look(m, m._chart(chosen), (granted[0] + 0.5 * m.step, *granted[1:]), to)
+        look(m, m._chart(chosen), (granted[0] + m.granted, *granted[1:]), to)
 
     if isinstance(maps, ShadowMap):
         one(maps, None, results)

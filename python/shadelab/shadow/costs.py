@@ -46,8 +46,8 @@ def cost(technique: str, *, itemsize: int = 4, **knobs: Any) -> Cost:
 
     Raises
     ------
-    ValueError
-        If there is no such technique.
+    TypeError, ValueError
+        If there is no such technique, or a count is not one.
 
     Examples
     --------
@@ -59,22 +59,29 @@ def cost(technique: str, *, itemsize: int = 4, **knobs: Any) -> Cost:
     Cost(texel_reads=16, rays=0, bytes=32)
     """
     _arrays.choice("technique", technique, (*_COMPARED, *_FILTERED))
+    itemsize = _arrays.count("itemsize", itemsize, 1)
     if technique == "ray_traced":
-        return Cost(0, int(knobs.get("samples", 16)), 0)
+        return Cost(0, _count(knobs, "samples", 16), 0)
     if technique in _FILTERED:
         return _of_moments(technique, itemsize, knobs)
     if technique == "hard":
         reads = 1
     elif technique == "distance_field":
         # Eight nodes a step; the kernel takes some tens of steps where there is something to find.
-        reads = 8 * int(knobs.get("max_steps", 128))
+        reads = 8 * _count(knobs, "max_steps", 128)
     elif technique == "pcf":
-        reads = int(knobs.get("samples", 16)) * (4 if knobs.get("bilinear") else 1)
+        reads = _count(knobs, "samples", 16) * (4 if knobs.get("bilinear") else 1)
     else:
-        reads = int(knobs.get("blocker_samples", 16)) + int(knobs.get("filter_samples", 32))
+        reads = _count(knobs, "blocker_samples", 16) + _count(knobs, "filter_samples", 32)
     # Stored depths: 24 bits lie in 32.
     size = {16: 2, 24: 4, 32: 4}.get(knobs.get("bits", 0), itemsize)
     return Cost(reads, 0, reads * size)
+
+
+def _count(knobs: dict[str, Any], name: str, usual: int) -> int:
+    """A knob that counts; whole numbers may come as floats."""
+    value = knobs.get(name, usual)
+    return _arrays.count(name, value, 0) if isinstance(value, int) else int(_arrays.number(name, value, 0.0))
 
 
 def _of_moments(technique: str, itemsize: int, knobs: dict[str, Any]) -> Cost:

@@ -53,8 +53,10 @@ def _asked(m: MomentMap, least: float, method: str, bias: float | None) -> tuple
 
 
 def _bias(m: MomentMap, bias: float, slope_bias: float, normal_offset: float, light_bleeding: float) -> list[float]:
-    # A few roundings of the depth itself are granted always, as in `hard`.
-    rounding = 16.0 * float(np.finfo(m.shadow_map.depth.dtype).eps) * max(abs(m.near), abs(m.far))
+    # Moments round depths as shares of their range.
+    rounding = m.shadow_map.granted + 16.0 * float(np.finfo(m.shadow_map.depth.dtype).eps) * max(
+        abs(m.near), abs(m.far)
+    )
     return [
         _arrays.number("bias", bias) + rounding,
         _arrays.number("slope_bias", slope_bias, 0.0),

@@ -54,6 +54,8 @@ class ShadowMap:
         Whether depth is stored as integers, and of which size: 16 bits as uint16, 24 and 32 as uint32.
     dtype : float32 or float64
         The precision of lookups where depth is stored as integers; otherwise that of `depth`.
+    rounding : float
+        World units of depth that drawing may have rounded off, which lookups grant to receivers.
 
     Raises
     ------
@@ -72,6 +74,7 @@ class ShadowMap:
     light_size: tuple[float, float] = (0.0, 0.0)
     bits: Bits = None
     dtype: np.dtype[Any] = np.dtype(np.float32)  # noqa: RUF009
+    rounding: float = 0.0
 
     def __post_init__(self) -> None:
         def fix(name: str, value: Any) -> None:
@@ -101,6 +104,7 @@ class ShadowMap:
         fix("near", _arrays.number("near", self.near, low))
         fix("far", _arrays.number("far", self.far, self.near))
         fix("light_size", _sides("light_size", self.light_size))
+        fix("rounding", _arrays.number("rounding", self.rounding, 0.0))
 
     @property
     def axis(self) -> NDArray[np.float64]:
@@ -141,6 +145,11 @@ class ShadowMap:
     def step(self) -> float:
         """The depth between two stored integers, of which rounding loses half at most; 0 where depths are floats."""
         return 0.0 if self.bits is None else (self.far - self.near) / (2**self.bits - 2)
+
+    @property
+    def granted(self) -> float:
+        """World units of depth that lookups always grant to receivers: `rounding`, and half a `step`."""
+        return self.rounding + 0.5 * self.step
 
     @property
     def bytes(self) -> int:
@@ -351,7 +360,17 @@ def _drawn(
         stored = np.empty(depth.shape, np.uint16 if bits == 16 else np.uint32)
         _kernels.quantize_depth(depth, (near, (far - near) / (2**bits - 2), 2**bits - 1), stored)
     kind: Literal["perspective", "orthographic"] = "perspective" if seen.perspective else "orthographic"
-    return ShadowMap(stored, kind, seen.origin, seen.frame, seen.window, near, far, sides, bits, points.dtype)
+    rounding = _rounding(points, seen)
+    return ShadowMap(stored, kind, seen.origin, seen.frame, seen.window, near, far, sides, bits, points.dtype, rounding)
+
+
+def _rounding(points: Floats, seen: _View) -> float:
+    """What drawing may round off.
+
+    Casters' own coordinates were rounded once; depths in parallel maps are drawn as shares of the whole range.
+    """
+    coordinates = float(np.abs(points).max(initial=0.0))
+    return float(np.finfo(points.dtype).eps) * (2.0 * coordinates + (0.0 if seen.perspective else 8.0 * abs(seen.far)))
 
 
 def _rounded(a: NDArray[np.float64], dtype: Any) -> NDArray[np.float64]:

@@ -14,7 +14,7 @@ from .. import _arrays
 from .._arrays import Floats
 from .._kernels import shadow as _kernels
 from ._sets import MapSet
-from .maps import Light, ShadowMap, _casters, _finite, _fitted
+from .maps import Light, ShadowMap, _casters, _finite, _fitted, _rounding
 
 __all__ = ["VirtualShadowMap", "virtual_shadow_map"]
 
@@ -30,7 +30,10 @@ class _Level:
     table: NDArray[np.int32]
     size: tuple[int, int]
     bits: int
-    step: float = 0.0
+
+    @property
+    def granted(self) -> float:
+        return self.whole.granted
 
     @property
     def dtype(self) -> np.dtype[Any]:
@@ -242,7 +245,8 @@ def virtual_shadow_map(
     kind: Any = "perspective" if seen.perspective else "orthographic"
     # One texel stands for the whole: its window, and nothing else of it, is asked for.
     blank = np.full((1, 1), np.inf, points.dtype)
-    whole = ShadowMap(blank, kind, seen.origin, seen.frame, seen.window, seen.near, seen.far, sides)
+    rounding = _rounding(points, seen)
+    whole = ShadowMap(blank, kind, seen.origin, seen.frame, seen.window, seen.near, seen.far, sides, rounding=rounding)
     bits = square.bit_length() - 1
     none = np.zeros((0, square, square), points.dtype)
 

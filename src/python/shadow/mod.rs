@@ -11,7 +11,7 @@ mod rays;
 mod soft;
 
 use crate::real::Real;
-use crate::shadow::lookup::Bias;
+use crate::shadow::anchor::Bias;
 use crate::shadow::pattern::{Kind, Pattern};
 use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
