@@ -253,6 +253,15 @@ def count(name: str, value: Any, low: int = 0, high: int | None = None) -> int:
     return x
 
 
+def counts(name: str, value: Any, n: int, low: int = 0, high: int | None = None) -> tuple[int, ...]:
+    """`n` integers in [low, high]."""
+    if isinstance(value, str | bytes | dict | set) or not hasattr(value, "__len__") or not hasattr(value, "__iter__"):
+        raise TypeError(f"{name}: expected {n} integers, got {type(value).__name__}")
+    if len(value) != n:
+        raise ValueError(f"{name}: expected {n} integers, got {len(value)}")
+    return tuple(count(name, x, low, high) for x in value)
+
+
 def choice(name: str, value: Any, options: Sequence[str]) -> str:
     """One of `options`."""
     if not isinstance(value, str):

@@ -81,6 +81,22 @@ pub fn fresnel_average_conductor(eta: f64, k: f64) -> f64 {
     if !(eta > 0.0 && k >= 0.0) {
         return f64::NAN;
     }
+    if eta < 1.0 {
+        // Where little is absorbed all is reflected below the critical angle, with a bend there: points gather on both
+        // sides of it, and at grazing.
+        let critical = ((1.0 - eta) * (1.0 + eta)).sqrt();
+        let term = |c: f64| 2.0 * c * fresnel_conductor(c, eta, k).average();
+        let below = quadrature(
+            #[inline(always)]
+            |x| critical * 6.0 * x * (1.0 - x) * term(critical * x * x * (3.0 - 2.0 * x)),
+        );
+        let rest = 1.0 - critical;
+        return below
+            + quadrature(
+                #[inline(always)]
+                |x| rest * 2.0 * x * term(critical + rest * x * x),
+            );
+    }
     // The bend near grazing is the sharper the larger the index: c = x² resolves it.
     quadrature(
         #[inline(always)]

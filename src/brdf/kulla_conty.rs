@@ -26,6 +26,10 @@ pub const SIZE: usize = 32;
 /// Cells of the quadrature by azimuth and by height of the drawn normals.
 const TURNS: usize = 32;
 const CELLS: usize = 96;
+/// The cosine that stands for zero.
+const GRAZING: f64 = 1e-6;
+/// √(3/5): the outer points of Gauss and Legendre's three.
+const OUTER: f64 = 0.774_596_669_241_483_4;
 
 /// What one bounce returns: rows of a roughness, by cosines; and the average of each row.
 pub struct Albedo {
@@ -37,8 +41,7 @@ pub struct Albedo {
 #[inline(always)]
 pub fn knot(i: usize) -> f64 {
     let x = i as f64 / (SIZE - 1) as f64;
-    // From 10⁻³ on, since nothing is seen at a cosine of zero.
-    (x * x).max(1e-3)
+    x * x
 }
 
 fn returned(facets: &Microfacets<f64>, cos: f64) -> f64 {
@@ -63,23 +66,31 @@ impl Albedo {
     fn build(shape: Shape, masking: Masking) -> Self {
         let mut table = Albedo { by_cosine: [[0.0; SIZE]; SIZE], average: [0.0; SIZE] };
         for (j, row) in table.by_cosine.iter_mut().enumerate() {
+            if j == 0 {
+                // A smooth mirror loses nothing.
+                *row = [1.0; SIZE];
+                continue;
+            }
             let alpha = knot(j);
             let facets = Microfacets { alpha_x: alpha, alpha_y: alpha, ratio: [1.0, 1.0], shape, masking };
             *row = std::array::from_fn(
                 #[inline(always)]
-                |i| returned(&facets, knot(i)),
+                |i| returned(&facets, knot(i).max(GRAZING)),
             );
         }
         for j in 0..SIZE {
             let row = table.row(j as f64);
-            let nodes = super::fresnel_average::gauss_legendre();
-            table.average[j] = nodes
-                .iter()
-                .map(
-                    #[inline(always)]
-                    |&(x, w)| 2.0 * x * w * row.at(x),
-                )
-                .sum();
+            // The integral of what is interpolated, not of what is known: in t with cosine t² it is a polynomial of the
+            // fifth degree between knots, which three points of Gauss and Legendre have exactly.
+            let step = 1.0 / (SIZE - 1) as f64;
+            let mut sum = 0.0;
+            for i in 0..SIZE - 1 {
+                for (x, weight) in [(-OUTER, 5.0 / 18.0), (0.0, 4.0 / 9.0), (OUTER, 5.0 / 18.0)] {
+                    let t = (i as f64 + 0.5 + 0.5 * x) * step;
+                    sum += weight * step * 4.0 * t * t * t * row.at(t * t);
+                }
+            }
+            table.average[j] = sum;
         }
         table
     }
@@ -108,8 +119,8 @@ impl Albedo {
 #[inline(always)]
 fn place(x: f64) -> f64 {
     let at = x.max(0.0).sqrt() * (SIZE - 1) as f64;
-    // Below the second knot the first is not at zero: straight in x.
-    if at < 1.0 { ((x - knot(0)) / (knot(1) - knot(0))).max(0.0) } else { at.min((SIZE - 1) as f64) }
+    // Below the second knot straight in x.
+    if at < 1.0 { at * at } else { at.min((SIZE - 1) as f64) }
 }
 
 /// E of one width, by the cosine.

@@ -27,13 +27,11 @@ pub struct Phong<T> {
     pub normalized: bool,
 }
 
-/// cⁿ for c in [0, 1].
+/// cⁿ for c in [0, 1]; zero below.
 #[inline(always)]
 fn power<T: Real>(c: T, n: T) -> T {
-    if n == T::zero() {
-        T::one()
-    } else if c > T::zero() {
-        math::pow(Lanes::min(c, T::one()), n)
+    if c > T::zero() {
+        if n == T::zero() { T::one() } else { math::pow(Lanes::min(c, T::one()), n) }
     } else {
         c * T::zero()
     }

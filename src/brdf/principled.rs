@@ -122,7 +122,8 @@ impl<T: Real> Principled<T> {
         let shine = largest(self.mirrors(wo.z));
         let body = largest(self.base) * rest * (one - glass);
         let coat = T::of(0.25) * self.clearcoat * mix(T::of(0.04), one, schlick_weight(wo.z));
-        let glass = glass * (one - shine);
+        // Facets let light pass where the flat interface lets none.
+        let glass = glass * (one - shine * T::of(0.5));
         let sum = body + shine + coat + glass;
         let scale = if sum > zero { one / sum } else { zero };
         [body * scale, shine * scale, coat * scale, glass * scale]
@@ -224,13 +225,22 @@ impl<T: Real> Drawn<T> for Principled<T> {
         } else if u[2] < body + shine {
             mirrored(self.glass.facets.sample(wo, pair))
         } else if u[2] < body + shine + coat {
-            mirrored(gtr1_sample(pair, self.coat_alpha))
+            let half = gtr1_sample(pair, self.coat_alpha);
+            if !(wo.dot(half) > zero) {
+                // A facet that looks away: what it would send below the horizon is no light of the glass.
+                return Some(Draw::none(mirrored(half)));
+            }
+            mirrored(half)
         } else if glass > zero {
             let first = body + shine + coat;
             let choice = Lanes::min((u[2] - first) / glass, one - T::EPSILON);
             let draw = Drawn::sample(&self.glass, wo, [u[0], u[1], choice])?;
-            if draw.specular || !(draw.pdf > zero) {
+            if !(draw.pdf > zero) {
                 return Some(draw);
+            }
+            if draw.specular {
+                let through = (one - self.metallic) * self.spec_trans;
+                return Some(Draw { weight: draw.weight * (through / glass), pdf: draw.pdf * glass, ..draw });
             }
             eta = draw.eta;
             draw.wi

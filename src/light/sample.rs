@@ -24,7 +24,8 @@ pub(super) fn anywhere<T: Real>(u: [T; 2]) -> Vec3<T> {
     Vec3::new(r * cos, r * sin, z)
 }
 
-/// [`Light::sight`], or [`Light::sight_evenly`], over arrays of equal length: directions, distances and densities; zeros where nothing shines.
+/// [`Light::sight`], or [`Light::sight_evenly`], over arrays of equal length: directions, distances and densities; zeros where nothing shines, NaN
+/// where `u` is outside of the unit square.
 pub fn light_sample_many<T: Real>(
     watch: &mut dyn Watch,
     light: &Light<T>,
@@ -39,7 +40,9 @@ pub fn light_sample_many<T: Real>(
         dispatch!(_s => {
             for i in 0..points.len() {
                 let from = Vec3::from(points[i]);
-                let nan = from.dot(Vec3::splat(T::zero())) + (u[i][0] + u[i][1]) * T::zero();
+                let [v, w] = u[i];
+                let inside = v >= T::zero() && v <= T::one() && w >= T::zero() && w <= T::one();
+                let nan = if inside { from.dot(Vec3::splat(T::zero())) } else { T::NAN };
                 (wi[i], distance[i], pdf[i]) = match if evenly { light.sight_evenly(from, u[i]) } else { light.sight(from, u[i]) } {
                     Some(s) if !nan.is_nan() => (s.wi.to_array(), s.distance, s.pdf),
                     _ => ([nan; 3], nan, nan),

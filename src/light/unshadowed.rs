@@ -18,6 +18,7 @@ use crate::dispatch;
 use crate::parallel::{self, Interrupted, Watch};
 use crate::real::{Lanes, Real};
 use crate::sampling::sobol::{Scramble, columns, sobol};
+use crate::simd::Simd;
 use crate::transform::orthonormal_basis::Frame;
 use crate::vec::Vec3;
 
@@ -83,15 +84,17 @@ pub enum Mirrors<'a> {
 }
 
 /// What a thread works with.
-pub struct Desk {
+pub struct Desk<S> {
+    token: S,
     corners: Vec<Vec3<f64>>,
-    scratch: Vec<Vec3<f64>>,
+    scratch: ltc::Scratch,
     few: Vec<[u32; 3]>,
 }
 
-impl Default for Desk {
-    fn default() -> Self {
-        Desk { corners: Vec::new(), scratch: Vec::new(), few: digits(0, 16) }
+impl<S: Simd> Desk<S> {
+    /// With the token of the dispatch that it is used in.
+    pub fn new(token: S) -> Self {
+        Desk { token, corners: Vec::new(), scratch: ltc::Scratch::default(), few: digits(0, 16) }
     }
 }
 
@@ -104,12 +107,12 @@ pub fn digits(start: u32, count: u32) -> Vec<[u32; 3]> {
 impl<T: Real> Receiver<T> {
     /// Radiance towards the eye from one light.
     #[inline(always)]
-    pub fn unshadowed(
+    pub fn unshadowed<S: Simd>(
         &self,
         light: &Light<T>,
         stream: u64,
         mirrors: Mirrors<'_>,
-        desk: &mut Desk,
+        desk: &mut Desk<S>,
     ) -> Vec3<T> {
         if light.has_area() {
             if let (Light::Textured(_), Mirrors::Sampled { digits, seed }) = (light, mirrors) {
@@ -147,7 +150,7 @@ impl<T: Real> Receiver<T> {
 
     /// The diffuse part: base/π (1 − F(wo)) ∫ (1 − F(c)) c dω, with (1 − c)⁵ c written in powers of c.
     #[inline(always)]
-    fn diffuse(&self, light: &Light<T>, desk: &mut Desk) -> Vec3<T> {
+    fn diffuse<S: Simd>(&self, light: &Light<T>, desk: &mut Desk<S>) -> Vec3<T> {
         // Metals have none; NaN goes on.
         if self.wo.z <= T::zero() || self.lobes.diffuse == Vec3::splat(T::zero()) {
             return (self.point + self.frame.z + self.wo) * T::zero();
@@ -162,8 +165,8 @@ impl<T: Real> Receiver<T> {
             let point = doubled(self.point);
             if ltc::outline(light, point, &mut desk.corners) {
                 let frame = self.doubled_frame();
-                let corners = desk.corners.iter().copied();
-                radiance = ltc::diffuse_picture(shown, point, corners, &frame, &mut desk.scratch).map(T::of);
+                let scratch = &mut desk.scratch;
+                radiance = ltc::diffuse_picture(shown, point, &desk.corners, &frame, scratch).map(T::of);
             }
         }
         self.lobes.diffuse.times(radiance) * factor
@@ -187,7 +190,7 @@ impl<T: Real> Receiver<T> {
 
     /// The mirrors' part of a light with an outline, by transformed cosines.
     #[inline(always)]
-    fn transformed(&self, light: &Light<T>, desk: &mut Desk) -> Vec3<T> {
+    fn transformed<S: Simd>(&self, light: &Light<T>, desk: &mut Desk<S>) -> Vec3<T> {
         let point = doubled(self.point);
         if !self.lobes.is_specular()
             || self.wo.z <= T::zero()
@@ -198,17 +201,17 @@ impl<T: Real> Receiver<T> {
         }
         let frame = self.doubled_frame();
         let (wo, alpha) = (doubled(self.wo), self.lobes.alpha.to_f64());
-        let (corners, scratch, mut radiance) =
-            (desk.corners.iter().copied(), &mut desk.scratch, light.radiance());
+        let Desk { token, corners, scratch, .. } = desk;
+        let (s, table, mut radiance) = (*token, ltc::shipped(), light.radiance());
         let parts = if let Light::Textured(shown) = light {
             let (parts, seen) =
-                ltc::mirrored_picture(ltc::shipped(), shown, point, corners, &frame, wo, alpha, scratch);
+                ltc::mirrored_picture(s, table, shown, point, corners, &frame, wo, alpha, scratch);
             radiance = seen.map(T::of);
             parts
         } else {
-            ltc::mirrored(ltc::shipped(), corners, &frame, wo, alpha, scratch)
+            ltc::mirrored(s, table, corners, &frame, wo, alpha, scratch)
         };
-        let [base, edge] = [T::of(Lanes::max(parts[0], 0.0)), T::of(Lanes::max(parts[1], 0.0))];
+        let [base, edge] = [T::of(parts[0]), T::of(parts[1])];
         self.lobes.f0.map(|f0| f0 * base + (self.lobes.f90 - f0) * edge).times(radiance)
     }
 
@@ -294,8 +297,8 @@ pub fn unshadowed_many<T: Real>(
     // About a microsecond for every light and ten samples.
     let piece = (4096 / (1 + lights.len() * (1 + samples / 16))).max(64);
     parallel::for_each(watch, out, piece, |first, out| {
-        let mut desk = Desk::default();
-        dispatch!(_s => {
+        dispatch!(s => {
+            let mut desk = Desk::new(s);
             for (i, out) in (first..).zip(out.iter_mut()) {
                 // By hand: a closure would be called outside the dispatch.
                 let mut sum = Vec3::splat(T::zero());

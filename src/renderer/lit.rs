@@ -8,6 +8,7 @@ use crate::light::Light;
 use crate::light::unshadowed::{Desk, Mirrors, Receiver};
 use crate::real::{Lanes, Real};
 use crate::sampling::sobol::Scramble;
+use crate::simd::Simd;
 use crate::transform::orthonormal_basis::Frame;
 use crate::vec::Vec3;
 
@@ -124,13 +125,13 @@ impl<T: Real> Site<'_, T> {
 
     /// What a source sends to the eye by this surface.
     #[inline(always)]
-    pub fn under(
+    pub fn under<S: Simd>(
         &self,
         source: Source<'_, T>,
         method: Method,
         stream: u64,
         sampling: &Sampling<'_>,
-        desk: &mut Desk,
+        desk: &mut Desk<S>,
     ) -> Vec3<T> {
         let none = (self.point + self.wo) * T::zero();
         if !self.is_seen() {

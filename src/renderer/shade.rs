@@ -124,7 +124,7 @@ fn body<T: Real, S: Simd>(
     first: usize,
     out: &mut [[T; 3]],
 ) {
-    let mut desk = Desk::default();
+    let mut desk = Desk::new(s);
     // Models by row, made once where nothing colours them, and those of them that lanes know.
     let count = surfaces.rows.len();
     let (mut models, mut table) = (Vec::with_capacity(count), Vec::with_capacity(count));

@@ -41,3 +41,11 @@ def test_schlicks_polynomial():
         assert float(brdf.fresnel_average(f0=f0)) == pytest.approx(expected, abs=1e-12)
     with pytest.raises(ValueError, match="either an index or f0"):
         brdf.fresnel_average()
+
+
+@pytest.mark.parametrize(("eta", "k"), [(0.5, 0.01), (0.5, 0.0), (0.9, 1e-3), (1e-3, 1e-3)])
+def test_thin_media_that_absorb_little_have_their_bend(eta, k):
+    """Against a midpoint rule over many cosines."""
+    c = (np.arange(1 << 20) + 0.5) / (1 << 20)
+    exact = (2 * c * brdf.fresnel(c, eta, k)).mean()
+    assert float(brdf.fresnel_average(eta, k)) == pytest.approx(exact, abs=1e-5)

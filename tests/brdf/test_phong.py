@@ -56,3 +56,17 @@ def test_large_exponents_stay_finite():
     for model in MODELS:
         draws = model(0.0, 1.0, 1e6).sample(wo, u)
         assert np.isfinite(draws.weight).all() and np.isfinite(draws.pdf).all()
+
+
+def test_an_exponent_of_zero_is_half_of_all_directions():
+    """About the mirror direction, none beyond a right angle from it."""
+    model = brdf.Phong(0.0, 0.7, 0.0)
+    wo = np.array([np.sqrt(1 - 0.1**2), 0, 0.1])
+    n = 400
+    z, phi = 1 - 2 * (np.arange(n) + 0.5) / n, 2 * np.pi * (np.arange(n) + 0.5) / n
+    r = np.sqrt(1 - z * z)[:, None]
+    wi = np.stack(np.broadcast_arrays(r * np.cos(phi), r * np.sin(phi), z[:, None]), -1)
+    weight = 4 * np.pi / n**2
+    assert model.pdf(wi, wo).sum() * weight == pytest.approx(1, abs=0.01)
+    exact = (model.eval(wi, wo)[..., 0] * np.maximum(wi[..., 2], 0)).sum() * weight
+    assert brdf.directional_albedo(model, wo, 1 << 14)[0] == pytest.approx(exact, rel=0.02)

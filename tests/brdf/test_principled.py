@@ -131,3 +131,44 @@ def test_mitsubas_coat_lacks_the_cosines():
     ours = ours - brdf.Principled(COLOR, form="2015", **bare).eval(wi, wo)
     # Differences of float32 values of about one.
     np.testing.assert_allclose(theirs, ours * (4 * wi[:, 2:] * wo[:, 2:]), rtol=1e-3, atol=2e-6)
+
+
+def sphere(n=600):
+    z, phi = 1 - 2 * (np.arange(n) + 0.5) / n, 2 * np.pi * (np.arange(n) + 0.5) / n
+    r = np.sqrt(1 - z * z)[:, None]
+    return np.stack(np.broadcast_arrays(r * np.cos(phi), r * np.sin(phi), z[:, None]), -1).reshape(
+        -1, 3
+    ), 4 * np.pi / n**2
+
+
+@pytest.mark.parametrize(
+    ("options", "cosine"),
+    [
+        (dict(roughness=0.6, spec_trans=1.0, clearcoat=1.0, clearcoat_gloss=0.0), 0.1),
+        (dict(roughness=0.6, spec_trans=0.5, clearcoat=0.5, clearcoat_gloss=0.1, metallic=0.3), 0.1),
+        (dict(roughness=0.6, spec_trans=1.0, eta=0.7), 0.4),
+        (dict(roughness=0.6, spec_trans=1.0, eta=0.7), 0.1),
+    ],
+)
+def test_draws_bring_all_that_passes(options, cosine):
+    """Below the horizon, where a coat sends draws that are no light, and where a flat interface is dark."""
+    model = brdf.Principled((0.8, 0.8, 0.8), form="2015", **options)
+    wo = np.array([np.sqrt(1 - cosine**2), 0, cosine])
+    wi, weight = sphere()
+    below = wi[:, 2] < 0
+    exact = (model.eval(wi[below], wo)[:, 0] * -wi[below, 2]).sum() * weight
+    u = np.random.default_rng(1).random((1 << 17, 3))
+    draws = model.sample(np.broadcast_to(wo, (len(u), 3)), u)
+    brought = np.where(draws.wi[:, 2] < 0, draws.weight[:, 0], 0)
+    assert brought.mean() == pytest.approx(exact, abs=5 * brought.std() / np.sqrt(len(u)) + 0.002)
+
+
+@pytest.mark.parametrize("metallic", [0.0, 0.5])
+def test_glass_of_no_index_passes_its_share(metallic):
+    model = brdf.Principled((0.2,) * 3, roughness=0.6, metallic=metallic, spec_trans=0.5, eta=1.0, form="2015")
+    wo = np.array([np.sqrt(1 - 0.81), 0, 0.9])
+    u = np.random.default_rng(1).random((1 << 16, 3))
+    draws = model.sample(np.broadcast_to(wo, (len(u), 3)), u)
+    passed = np.where(draws.specular, draws.weight[:, 0], 0)
+    right = np.sqrt(0.2) * 0.5 * (1 - metallic)
+    assert passed.mean() == pytest.approx(right, rel=0.02)

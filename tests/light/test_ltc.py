@@ -1,6 +1,6 @@
 """Transformed cosines: lobes that are densities, magnitudes that are GGX's, light near that of the exact lobe.
 
-`python tests/light/test_ltc.py fit` fits the shipped table anew, about a minute, and writes it for the next build.
+`python tests/light/test_ltc.py fit` fits the shipped table anew, about ten seconds, and writes it for the next build.
 """
 
 import sys
@@ -30,11 +30,15 @@ def sphere(n):
 
 @pytest.mark.parametrize("at", [(31, 0), (31, 31), (16, 20), (10, 5)])
 def test_lobes_are_densities(at):
-    m = TABLE.inverse[at].astype(float)
     w, weight = sphere(1500)
+    for m in TABLE.inverse[at].astype(float):
+        assert density(m, w).sum() * weight == pytest.approx(1, rel=2e-3)
+
+
+def density(m, w):
+    """Of a cosine lobe that the inverse of `m` has sheared."""
     v = w @ m.T
-    density = np.maximum(v[..., 2], 0) * np.linalg.det(m) / (np.pi * (v**2).sum(-1) ** 2)
-    assert density.sum() * weight == pytest.approx(1, rel=2e-3)
+    return np.maximum(v[..., 2], 0) * np.linalg.det(m) / (np.pi * (v**2).sum(-1) ** 2)
 
 
 @pytest.mark.parametrize(("row", "column"), [(31, 0), (20, 0), (31, 25), (12, 16), (6, 10)])
@@ -47,18 +51,18 @@ def test_magnitudes_are_those_of_ggx(row, column):
     share = np.divide(value, pdf, out=np.zeros(len(wi)), where=(wi[:, 2] > 0) & (pdf > 0))
     half = (wi + wo) / np.linalg.norm(wi + wo, axis=-1, keepdims=True)
     # The average of 2^14 points is good to 2e-4; the fit's own rule crowds its points in the lobe's long tail.
-    assert TABLE.magnitude[row, column] == pytest.approx(share.mean(), abs=3e-4)
+    assert TABLE.magnitude[row, column].sum() == pytest.approx(share.mean(), abs=3e-4)
     grazing = (share * (1 - (wi * half).sum(-1)) ** 5).mean()
-    assert TABLE.grazing[row, column] == pytest.approx(grazing, abs=3e-4)
+    assert TABLE.grazing[row, column].sum() == pytest.approx(grazing, abs=3e-4)
 
 
 # Half of ∫ |f − g| dω of both lobes as densities, at roughness 0.25, 0.5, 0.75, 1 and 0, 30, 60, 75, 85 degrees.
 VARIATION = np.array(
     [
-        [0.003, 0.004, 0.027, 0.074, 0.197],
-        [0.018, 0.028, 0.068, 0.130, 0.188],
-        [0.014, 0.023, 0.043, 0.065, 0.088],
-        [0.016, 0.018, 0.027, 0.042, 0.071],
+        [0.002, 0.002, 0.018, 0.056, 0.155],
+        [0.012, 0.014, 0.033, 0.058, 0.092],
+        [0.006, 0.010, 0.022, 0.033, 0.052],
+        [0.006, 0.006, 0.010, 0.014, 0.025],
     ]
 )
 
@@ -71,31 +75,38 @@ def test_the_lobes_error_is_as_measured(row):
         w, _ = sphere(1000)
         up = w[..., 2] > 0
         f = np.where(up, sl.brdf.ggx(w, wo, alpha)[..., 0] * w[..., 2], 0)
-        m = lobe(alpha, wo[2])
-        v = w @ m.T
-        g = np.where(up, np.maximum(v[..., 2], 0) / (v**2).sum(-1) ** 2, 0)
+        g = sum(
+            share * (part := np.where(up, density(m, w), 0)) / part.sum()
+            for m, share in zip(*pair(alpha, wo[2]), strict=True)
+        )
         error = np.abs(f / f.sum() - g / g.sum()).sum() / 2
         assert error == pytest.approx(VARIATION[row, column], abs=0.003)
 
 
-def lobe(alpha, cosine):
-    """The table's inverse matrix, between four of the grid."""
+def pair(alpha, cosine):
+    """The table's inverse matrices and magnitudes, between four of the grid."""
     s, t = 31 * np.sqrt(alpha), 31 * np.sqrt(1 - cosine)
     i, j = min(int(s), 30), min(int(t), 30)
     s, t = s - i, t - j
+
+    def between(x):
+        return (x[i, j] * (1 - t) + x[i, j + 1] * t) * (1 - s) + (x[i + 1, j] * (1 - t) + x[i + 1, j + 1] * t) * s
+
     m = TABLE.inverse.astype(float).copy()
-    m[..., 2, :] /= np.maximum(np.linspace(0, 1, 32) ** 2, 1e-4)[:, None, None]
-    m = (m[i, j] * (1 - t) + m[i, j + 1] * t) * (1 - s) + (m[i + 1, j] * (1 - t) + m[i + 1, j + 1] * t) * s
-    m[2] *= alpha
-    return m
+    m[..., 2, :] /= np.maximum(np.linspace(0, 1, 32) ** 2, 1e-4)[:, None, None, None]
+    m = between(m)
+    m[:, 2] *= alpha
+    return m, between(TABLE.magnitude.astype(float))
 
 
 def test_the_shipped_table_is_what_the_fit_gives():
+    """Of its last row, from which the others go on; magnitudes are those of GGX, whatever the fit."""
     fitted = L.fit_ltc((2, 32))
-    for row, k in ((0, 0), (31, 1)):
-        assert np.array_equal(fitted.magnitude[k], TABLE.magnitude[row])
-        assert np.array_equal(fitted.inverse[k], TABLE.inverse[row])
-    assert fitted.distance.max() < 0.2
+    assert np.array_equal(fitted.magnitude[1], TABLE.magnitude[31])
+    assert np.array_equal(fitted.inverse[1], TABLE.inverse[31])
+    assert np.allclose(fitted.magnitude[0].sum(-1), TABLE.magnitude[0].sum(-1), rtol=1e-6)
+    # A mirror of alpha 1e-4 seen from 0.06 degrees above its plane is beyond the pair.
+    assert fitted.distance[:, :-1].max() < 0.2
 
 
 @pytest.mark.parametrize("dtype", FLOATS)
@@ -112,10 +123,10 @@ def test_light_is_near_that_of_the_exact_lobe(roughness, dtype):
     exact = L.unshadowed(RECT, points, up, [0.9, 0.6, 0.3], samples=1024, **material)
     got = L.unshadowed(RECT, points, up, [0.9, 0.6, 0.3], method="ltc", **material)
     assert got.dtype == dtype
-    # Measured of white at these roughnesses: root mean square 0.001, 0.007, 0.015, 0.016, largest 0.004, 0.031, 0.071,
-    # 0.084.
-    assert np.abs(got - exact).max() / exact.max() < 0.09
-    assert np.sqrt(((got - exact) ** 2).mean()) / exact.max() < 0.025
+    # Measured of white at these roughnesses: root mean square 0.0005, 0.003, 0.006, 0.0035, largest 0.006, 0.015, 0.03,
+    # 0.021.
+    assert np.abs(got - exact).max() / exact.max() < 0.035
+    assert np.sqrt(((got - exact) ** 2).mean()) / exact.max() < 0.008
     direct = L.ltc(RECT, points, up, wo, roughness**2, [0.9, 0.6, 0.3])
     assert np.allclose(direct, got, rtol=0, atol=float(1e-5 * exact.max()))
 
@@ -127,7 +138,7 @@ def test_a_light_all_around_gives_the_magnitude():
         alpha, cosine = (row / 31) ** 2, 1 - (column / 31) ** 2
         full = L.ltc(ceiling, [0.0, 0, 0], up, eye(cosine), alpha, full_output=True)
         # What the approximation's lobe has below the horizon does not count; the ceiling ends 1e-4 above it.
-        assert full.base / TABLE.magnitude[row, column] == pytest.approx(1, abs=1e-3)
+        assert full.base / TABLE.magnitude[row, column].sum() == pytest.approx(1, abs=1e-3)
 
 
 def test_horizons_backs_and_bad_elements():

@@ -162,3 +162,20 @@ def test_over_the_solid_angle_every_direction_has_one_density(light):
     whole = sl.light.polygon_moments(light.corners, point, [0.0, 1, 0])[0]
     assert np.allclose(pdf, 1 / whole, rtol=1e-12)
     assert (sl.light.light_pdf(light, point, wi, method="solid_angle") > 0).all()
+
+
+@pytest.mark.parametrize(
+    "light",
+    [
+        sl.light.RectLight((0, 2, 0), (1, 0, 0), (0, 0, 1)),
+        sl.light.DiskLight((0, 2, 0), (0, -1, 0), 1.0),
+        sl.light.SphereLight((0, 2, 0), 1.0),
+        sl.light.PolygonLight([[0, 2, 0], [1, 2, 0], [0, 2, 1]]),
+        sl.light.AmbientLight(),
+    ],
+)
+def test_numbers_beyond_the_square_give_nan(light):
+    u = [[1.5, 0.5], [0.5, 2.0], [-0.1, 0.5], [0.5, np.nan], [1.0, 1.0], [0.25, 0.75]]
+    drawn = sl.light.light_sample(light, [0.0, 0.0, 0.0], u)
+    for part in drawn:
+        assert np.isnan(part[:4]).all() and not np.isnan(part[4:]).any()

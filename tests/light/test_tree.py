@@ -120,3 +120,42 @@ def test_bad_choices_are_refused():
         L.LightSelection([], "best")
     with pytest.raises(ValueError, match="light: index 1 at"):
         L.LightSelection([L.PointLight((0, 0, 0))]).probability([0.0, 0, 0], [1])
+
+
+@pytest.mark.parametrize("seed", range(20))
+def test_wide_spots_have_chances_and_leave_none_out(seed):
+    """The falloff of a spot wider than a right angle is no cosine."""
+    rng = np.random.default_rng(seed)
+    outer = rng.uniform(0.1, np.pi, 6)
+    axes = rng.normal(size=(6, 3))
+    many = [
+        L.SpotLight(p, d, (1, 1, 1), rng.uniform(0, o), o)
+        for p, d, o in zip(rng.uniform(-3, 3, (6, 3)), axes, outer, strict=True)
+    ]
+    many += [L.PointLight((0, 1, 0), (0.1, 0.1, 0.1)), L.PointLight((4, 4, 4))]
+    points = rng.uniform(-5, 5, (40, 3))
+    chances = L.LightSelection(many).probability(points[:, None], np.arange(8))
+    assert (chances >= 0).all() and (chances <= 1).all()
+    up = np.array([0.0, 1.0, 0.0])
+    for i, light in enumerate(many):
+        shines = L.irradiance(light, points, up)[:, 0] + L.irradiance(light, points, -up)[:, 0] > 0
+        assert (chances[shines, i] > 0).all()
+
+
+@pytest.mark.parametrize("dtype", FLOATS)
+@pytest.mark.parametrize("method", ["power", "tree"])
+def test_faint_lights_beside_a_very_bright_one_are_drawn(method, dtype):
+    many = [L.PointLight((0, 0, 0), (1e9,) * 3)] + [L.PointLight((float(i), 0, 0)) for i in range(1, 6)]
+    choice = L.LightSelection(many, method)
+    point = np.array([3, 0.01, 0], dtype)
+    chances = choice.probability(point, np.arange(6))
+    assert (chances > 1e-16).all() and chances.sum() == pytest.approx(1, abs=1e-5)
+    drawn, _ = choice.draw(point, (np.arange(1 << 18) / (1 << 18)).astype(dtype))
+    assert method == "tree" or set(drawn) == set(range(6))
+
+
+def test_any_collection_of_lights_counts_all_and_numbers_beyond_one_are_nan():
+    three = [L.PointLight((float(i), 1, 0)) for i in range(3)]
+    assert len(L.LightSelection(x for x in three)) == 3 == len(L.LightSelection(np.array(three, object)))
+    light, chance = L.LightSelection(three, "uniform").draw([0.0, 0, 0], [1.5, -1.0, 1.0, 0.5])
+    assert (light[:3] == -1).all() and np.isnan(chance[:3]).all() and light[3] == 1

@@ -64,3 +64,17 @@ def test_what_has_no_flux_is_refused():
         L.with_flux(L.SpotLight((0, 0, 0), (0, 1, 0), outer_angle=0.0), 1.0)
     with pytest.raises(ValueError, match="color: expected a colour that is not black"):
         L.radiometric(1.0, (0.0, 0.0, 0.0))
+
+
+@pytest.mark.parametrize("length", [1e-300, 1.0, 1e300])
+def test_axes_of_any_length_have_their_intensity(length):
+    spot = sl.light.SpotLight((0, 2, 0), (0, -length, 0))
+    disk = sl.light.DiskLight((0, 2, 0), (0, -length, 0), 1.0)
+    assert np.allclose(sl.light.intensity(spot, [0.0, -1, 0]), spot.intensity)
+    assert np.allclose(sl.light.intensity(disk, [0.0, -1, 0]), np.pi * np.asarray(disk.radiance))
+
+
+@pytest.mark.parametrize("size", [1e160, 1e25, 1e-25])
+def test_polygons_beyond_the_sizes_of_lights_are_refused(size):
+    with pytest.raises(ValueError, match="corners: expected a polygon of 1e-15 to 1e"):
+        sl.light.PolygonLight([[0, 0, 0], [size, 0, 0], [0, size, 0]])

@@ -118,3 +118,14 @@ def test_wrong_calls_name_the_argument():
     nan[1] = np.nan
     got = sl.light.unshadowed(LIGHTS, nan, normals, [0.5] * 3, eye=EYE)
     assert np.isnan(got[1]).all() and np.isfinite(got[[0, 2, 3]]).all()
+
+
+def test_ids_far_below_zero_are_no_surface():
+    up = [0.0, 1.0, 0.0]
+    colors = [[1.0, 0, 0], [0, 1, 0]]
+    for low in (-(2**32), -(2**63), -1):
+        ids = np.array([low, 1])
+        got = sl.light.unshadowed(
+            sl.light.PointLight((0, 2, 0)), [[0.0, 0, 0]] * 2, up, colors, wo=up, material_ids=ids
+        )
+        assert (got[0] == 0).all() and (got[1] > 0).all()

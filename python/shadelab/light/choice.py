@@ -11,7 +11,7 @@ from numpy.typing import ArrayLike, NDArray
 from .. import _arrays
 from .._arrays import Floats
 from .._kernels import light as _kernels
-from .kinds import Light, _table
+from .kinds import Light, _several, _table
 
 __all__ = ["LightChoice", "LightSelection"]
 
@@ -62,8 +62,9 @@ class LightSelection:
     """
 
     def __init__(self, lights: Light | Sequence[Light], method: str = "tree", *, scene_radius: float = 1.0) -> None:
-        packed = _table("lights", lights)
-        self._count = len(lights) if isinstance(lights, Sequence) else 1
+        several = _several("lights", lights)
+        packed = _table("lights", several)
+        self._count = len(several)
         self._method = _arrays.choice("method", method, _METHODS)
         radius = _arrays.number("scene_radius", scene_radius, 0)
         self._chooser = _kernels.chooser(packed, self._method, radius)

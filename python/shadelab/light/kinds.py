@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Sequence
+from collections.abc import Iterable, Sequence
 from dataclasses import dataclass, field, fields
 from hashlib import sha256
 from typing import Any, TypeAlias
@@ -415,7 +415,10 @@ class PolygonLight:
             raise ValueError("corners: expected finite numbers")
         object.__setattr__(self, "corners", tuple((float(x), float(y), float(z)) for x, y, z in corners))
         _freeze(self, "radiance", skip=("corners",))
-        size = float(np.ptp(corners, axis=0).max())
+        with np.errstate(over="ignore"):
+            size = float(np.ptp(corners, axis=0).max())
+        if not _LEAST <= size <= _MOST:
+            raise ValueError(f"corners: expected a polygon of {_LEAST:g} to {_MOST:g} in size, got {size:g}")
         twice = self._twice_area()
         if not np.linalg.norm(twice) > 1e-12 * size**2:
             raise ValueError("corners: expected a polygon with an area")
@@ -531,11 +534,8 @@ def _crosses_itself(corners: NDArray[np.float64], twice: NDArray[np.float64]) ->
     return bool(crossing.any())
 
 
-def _table(name: str, lights: Light | Sequence[Light]) -> Any:
-    """Lights as numbers for the kernels: the kind of each, how many numbers follow, and these.
-
-    With what gives the pictures of those that show some, in order.
-    """
+def _several(name: str, lights: Light | Iterable[Light]) -> list[Light]:
+    """One light or many, as a list."""
     try:
         several = [lights] if isinstance(lights, Light) else list(lights)
     except TypeError:
@@ -543,6 +543,15 @@ def _table(name: str, lights: Light | Sequence[Light]) -> Any:
     for light in several:
         if not isinstance(light, Light):
             raise TypeError(f"{name}: expected a light or lights, got {type(light).__name__}")
+    return several
+
+
+def _table(name: str, lights: Light | Sequence[Light]) -> Any:
+    """Lights as numbers for the kernels: the kind of each, how many numbers follow, and these.
+
+    With what gives the pictures of those that show some, in order.
+    """
+    several = _several(name, lights)
     numbers = np.array([x for light in several for x in light._row()], np.float64)
     shown = [light._shown for light in several if isinstance(light, RectLight) and light.texture is not None]
     return (numbers, shown) if shown else numbers

@@ -64,6 +64,9 @@ def _receivers(
             raise ValueError(f"material_ids: expected shape {shape}, got {ids.shape}")
         if ids.size and int(ids.max()) >= len(tables[1]):
             raise ValueError(f"material_ids: index {int(ids.max())} is out of range [-1, {len(tables[1])})")
+        if ids.dtype.kind == "i":
+            # Before the cast: the least of other integers would come round to a row.
+            ids = np.maximum(ids, -1)
         ids = np.require(ids.reshape(-1), np.int32, ["C", "A"])
     elif len(tables[1]) != 1 and lead != shape:
         raise ValueError(f"base_color: expected materials of shape () or {shape}, got {lead}")

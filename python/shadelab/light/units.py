@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import dataclasses
 import math
+from collections.abc import Sequence
 from typing import Any, TypeVar
 
 import numpy as np
@@ -108,13 +109,13 @@ def intensity(light: Light, directions: ArrayLike) -> Floats:
     if isinstance(light, PointLight):
         share, color = ones, light.intensity
     elif isinstance(light, SpotLight):
-        axis = np.asarray(light.direction, np.float64) / np.linalg.norm(light.direction)
+        axis = _unit(light.direction)
         inner, outer = (2 * math.sin(a / 2) ** 2 for a in (light.inner_angle, light.outer_angle))
         off = ((w - axis) ** 2).sum(-1) / 2
         t = np.clip((outer - off) / (outer - inner), 0, 1) if outer > inner else off <= inner
         share, color = t * t * (3 - 2 * t) * ones, light.intensity
     elif isinstance(light, RectLight | DiskLight | PolygonLight):
-        axis = np.asarray(light.normal, np.float64) / np.linalg.norm(light.normal)
+        axis = _unit(light.normal)
         cosine = w @ axis
         share, color = light.area * (np.abs(cosine) if light.two_sided else np.maximum(cosine, 0)), _mean(light)
     elif isinstance(light, SphereLight):
@@ -123,6 +124,12 @@ def intensity(light: Light, directions: ArrayLike) -> Floats:
         raise TypeError(f"light: expected a light with a place, got {type(light).__name__}")
     result: Floats = (np.asarray(share)[..., None] * np.asarray(color)).astype(w.dtype)
     return result
+
+
+def _unit(direction: Sequence[float]) -> NDArray[np.float64]:
+    """Of any length: squares of the largest and the least leave the range of numbers."""
+    scaled = np.asarray(direction, np.float64) / np.max(np.abs(direction))
+    return np.asarray(scaled / np.linalg.norm(scaled))
 
 
 def with_flux(light: Kind, watts: ArrayLike) -> Kind:

@@ -201,6 +201,9 @@ def _ids(given: ArrayLike, shape: tuple[int, ...], count: int) -> NDArray[np.int
         raise TypeError(f"material_ids: expected integers, got dtype {ids.dtype}")
     if ids.size and int(ids.max()) >= count:
         raise ValueError(f"material_ids: index {int(ids.max())} is out of range [-1, {count})")
+    if ids.dtype.kind == "i":
+        # Before the cast: the least of other integers would come round to a row.
+        ids = np.maximum(ids, -1)
     return _spread("material_ids", ids, shape, np.int32)
 
 

@@ -1,217 +1,305 @@
-//! The fit of [`super::Table`]: for each roughness and angle the matrix whose lobe is nearest to that of GGX.
+//! The fit of [`super::Table`]: for each roughness and angle the pair of lobes whose sum is nearest to GGX.
 //!
-//! Nearest by the triangular discrimination ∫ (f − g)² / (f + g) dω of both as densities, which is 0 for equal lobes and 2
-//! for disjoint ones, however sharp they are; by directions drawn from both. The lobe's density is that of its part above
-//! the horizon. Four numbers are sought by Nelder and Mead's
-//! simplex: the stretch along and across the plane of incidence, the shear, and the tilt. Along a row of the table each
-//! fit starts from that of the angle before.
+//! Nearest as densities, by ∫ (f − g)² / (f + ε) dω: squares over f + ε, so that neither a bright place nor a dim one
+//! counts alone. By directions drawn from GGX, from a wider one and evenly by the cosine, balanced; the same for every
+//! trial, so that the distance is smooth. The eight numbers of both shapes (stretch along and across the plane of
+//! incidence, shear, tilt) are sought by Levenberg's and Marquardt's steps. Both lobes have half of the light: shares that
+//! are free make the second lobe a far tail here and a half there, and between such neighbours the table is wrong by
+//! more than they are. Each pair starts from its neighbour in the table and is held near it where the distance does
+//! not tell: neighbours that are alike are what interpolation between them needs.
 //!
 //! `python tests/light/test_ltc.py fit` writes the table that is shipped.
 //!
-//! J. A. Nelder, R. Mead, *A simplex method for function minimization*, 1965.
+//! D. W. Marquardt, *An algorithm for least-squares estimation of nonlinear parameters*, 1963.
 
-use super::{ENTRIES, Lobe, Table, alpha_of};
+use super::table::{ENTRIES, Lobe, Table, alpha_of};
 use crate::brdf::fresnel::schlick_weight;
 use crate::brdf::ggx::{self, Masking};
 use crate::math;
 use crate::parallel::{self, Interrupted, Watch};
 use crate::real::Lanes;
-use crate::sampling::cosine_hemisphere::square_to_cosine_hemisphere;
+use crate::sampling::cosine_hemisphere::{square_to_cosine_hemisphere, square_to_cosine_hemisphere_pdf};
 use crate::sampling::disk::Method;
 use crate::vec::Vec3;
 use std::sync::Mutex;
+use std::sync::atomic::Ordering;
 
-/// Logarithms of the stretches, the shear over the stretch, the tilt.
-type Shape = [f64; 4];
-
-/// A sheared cosine lobe with its forward matrix.
-struct Sheared {
-    lobe: Lobe,
-    /// Columns of the forward matrix in the plane, and the stretch across it.
-    x: [f64; 2],
-    z: [f64; 2],
-    across: f64,
+/// Numbers of both shapes: for each the logarithms of the stretches over alpha, the shear over the stretch, and how far
+/// from the mirror direction it is tilted, over alpha.
+const UNKNOWN: usize = 8;
+type Shapes = [f64; UNKNOWN];
+/// ε: what keeps dim places from counting by their ratio alone.
+const DIM: f64 = 0.02;
+/// How strongly neighbours are held together.
+const HOLD: f64 = 1e-3;
+const MOST_STEPS: usize = 60;
+/// Of the light, in the second lobe.
+const SHARE: f64 = 0.5;
+/// One lobe of a shape, of unit magnitude, for an eye at an angle.
+fn lobe(alpha: f64, eye: f64, shape: &[f64]) -> Lobe {
+    let (m, n) = (alpha * math::exp(shape[0]), alpha * math::exp(shape[1]));
+    let (sin, cos) = math::sin_cos(alpha * shape[3] - eye);
+    // M = turn · (m, 0, s; 0, n, 0; 0, 0, 1): the columns in the plane of (x, z).
+    let s = shape[2] * m;
+    let x = [cos * m, -sin * m];
+    let z = [cos * s + sin, cos - sin * s];
+    // The inverse times n: the middle entry becomes one.
+    let scale = n / m;
+    Lobe { inverse: [z[1] * scale, -z[0] * scale, -x[1] * scale, x[0] * scale], magnitude: 1.0, grazing: 0.0 }
 }
 
-impl Sheared {
-    fn new([along, across, shear, tilt]: Shape) -> Self {
-        let (m, n) = (math::exp(along), math::exp(across));
-        let (sin, cos) = math::sin_cos(tilt);
-        // M = turn · (m, 0, s; 0, n, 0; 0, 0, 1): the columns in the plane of (x, z).
-        let s = shear * m;
-        let x = [cos * m, -sin * m];
-        let z = [cos * s + sin, cos - sin * s];
-        // The inverse times n: the middle entry becomes one.
-        let scale = n / m;
-        let inverse = [z[1] * scale, -z[0] * scale, -x[1] * scale, x[0] * scale];
-        Sheared { lobe: Lobe { inverse, magnitude: 1.0, grazing: 0.0 }, x, z, across: n }
-    }
-    fn sample(&self, u: [f64; 2]) -> Vec3<f64> {
-        let c = square_to_cosine_hemisphere(u, Method::Concentric);
-        Vec3::new(self.x[0] * c.x + self.z[0] * c.z, self.across * c.y, self.x[1] * c.x + self.z[1] * c.z)
-            .normalize()
-    }
+/// A direction above the horizon with what it stands for, and the density of GGX times the cosine there.
+struct Place {
+    wi: Vec3<f64>,
+    weight: f64,
+    value: f64,
+    /// Schlick's (1 − wi·h)⁵.
+    grazing: f64,
 }
 
 /// GGX times the cosine, seen from one direction.
 struct Target {
-    wo: Vec3<f64>,
     alpha: f64,
     magnitude: f64,
     grazing: f64,
-    /// Directions drawn from its visible normals, with their densities.
-    drawn: Vec<(Vec3<f64>, f64)>,
-    squares: Vec<[f64; 2]>,
+    places: Vec<Place>,
+    /// Its angle from the normal.
+    eye: f64,
+}
+
+/// A pair of shapes under trial.
+struct Trial {
+    /// Of the distance, with what holds it.
+    square: f64,
+    residuals: Vec<f64>,
 }
 
 impl Target {
     fn new(alpha: f64, cos_theta: f64, steps: usize) -> Self {
         let wo = Vec3::new(((1.0 - cos_theta) * (1.0 + cos_theta)).sqrt(), 0.0, cos_theta);
         let middle = |k: usize, n: usize| (k as f64 + 0.5) / n as f64;
-        let squares: Vec<[f64; 2]> =
-            (0..steps * steps).map(|k| [middle(k % steps, steps), middle(k / steps, steps)]).collect();
-        let mut target = Target { wo, alpha, magnitude: 0.0, grazing: 0.0, drawn: Vec::new(), squares };
+        let value = |wi: Vec3<f64>| {
+            ggx::distribution_and_visibility(wi, wo, alpha, Masking::HeightCorrelated).0 * wi.z
+        };
+        let schlick = |wi: Vec3<f64>| schlick_weight(Lanes::min(wi.dot((wi + wo).normalize()), 1.0));
+        let (mut magnitude, mut grazing) = (0.0, 0.0);
         // The magnitudes are means over a finer square, with points crowded at the ends of the second number, where the
         // lobe's long tails are.
         let fine = 8 * steps;
         for k in 0..fine * fine {
             let v = middle(k / fine, fine);
-            let (wi, pdf) = target.draw([middle(k % fine, fine), v * v * (3.0 - 2.0 * v)]);
+            let wi = ggx::ggx_sample(wo, [middle(k % fine, fine), v * v * (3.0 - 2.0 * v)], alpha);
+            let pdf = ggx::ggx_pdf(wi, wo, alpha);
             if wi.z > 0.0 && pdf > 0.0 {
-                let crowding = 6.0 * v * (1.0 - v);
-                let weight = crowding * target.value(wi) / (pdf * (fine * fine) as f64);
-                let half = (wi + wo).normalize();
-                target.magnitude += weight;
-                target.grazing += weight * schlick_weight(Lanes::min(wi.dot(half), 1.0));
+                let weight = 6.0 * v * (1.0 - v) * value(wi) / (pdf * (fine * fine) as f64);
+                magnitude += weight;
+                grazing += weight * schlick(wi);
             }
         }
-        target.drawn = target.squares.iter().map(|&u| target.draw(u)).collect();
-        target
-    }
-    fn draw(&self, u: [f64; 2]) -> (Vec3<f64>, f64) {
-        let wi = ggx::ggx_sample(self.wo, u, self.alpha);
-        (wi, ggx::ggx_pdf(wi, self.wo, self.alpha))
-    }
-    /// f cos θ without Fresnel.
-    fn value(&self, wi: Vec3<f64>) -> f64 {
-        if wi.z <= 0.0 {
-            return 0.0;
+        let wider = f64::min(4.0 * alpha, 1.0);
+        let mut places = Vec::new();
+        for k in 0..3 * steps * steps {
+            let (which, k) = (k % 3, k / 3);
+            let u = [middle(k % steps, steps), middle(k / steps, steps)];
+            let wi = match which {
+                0 => ggx::ggx_sample(wo, u, alpha),
+                1 => ggx::ggx_sample(wo, u, wider),
+                _ => square_to_cosine_hemisphere(u, Method::Concentric),
+            };
+            let pdf = ggx::ggx_pdf(wi, wo, alpha)
+                + ggx::ggx_pdf(wi, wo, wider)
+                + square_to_cosine_hemisphere_pdf(wi);
+            if wi.z > 0.0 && pdf > 0.0 {
+                let weight = 1.0 / (pdf * (steps * steps) as f64);
+                places.push(Place { wi, weight, value: value(wi) / magnitude, grazing: schlick(wi) });
+            }
         }
-        ggx::distribution_and_visibility(wi, self.wo, self.alpha, Masking::HeightCorrelated).0 * wi.z
+        Target { alpha, magnitude, grazing, places, eye: math::atan2(wo.x, wo.z) }
     }
-    /// The triangular discrimination of the lobe and the target.
-    fn distance(&self, shape: Shape) -> f64 {
-        let sheared = Sheared::new(shape);
-        let above = sheared.lobe.above();
-        let term = |wi: Vec3<f64>, drawn: f64| {
-            // Of the lobe's part above the horizon; draws are from all of it.
-            let all = sheared.lobe.density(wi);
-            let (f, g) = (self.value(wi) / self.magnitude, if wi.z > 0.0 { all / above } else { 0.0 });
-            let sum = f + g;
-            // Balanced over both ways to draw.
-            let weight = drawn + all;
-            if sum > 0.0 && weight > 0.0 { (f - g) * (f - g) / (sum * weight) } else { 0.0 }
-        };
-        let mut total = 0.0;
-        for (&(wi, pdf), &u) in self.drawn.iter().zip(&self.squares) {
-            total += term(wi, pdf);
-            let wi = sheared.sample(u);
-            total += term(wi, ggx::ggx_pdf(wi, self.wo, self.alpha));
-        }
-        let result = total / self.squares.len() as f64;
-        if result.is_finite() { result } else { f64::MAX }
-    }
-    /// Around the mirror direction, as wide as alpha.
-    fn guess(&self) -> Shape {
-        let width = math::ln(1.2 * self.alpha);
-        [width, width, 0.0, -math::atan2(self.wo.x, self.wo.z)]
-    }
-}
 
-/// The least of a function near `start`.
-fn minimize(start: Shape, steps: Shape, f: impl Fn(Shape) -> f64) -> (Shape, f64) {
-    const N: usize = 4;
-    let mut simplex: Vec<(Shape, f64)> = (0..=N)
-        .map(|k| {
-            let mut x = start;
-            if k > 0 {
-                x[k - 1] += steps[k - 1];
-            }
-            (x, f(x))
+    /// A narrow lobe about the mirror direction, and a wide one about it.
+    fn guess(&self) -> Shapes {
+        [0.0, 0.0, 0.0, 0.0, 0.7, 0.5, 0.0, 0.0]
+    }
+
+    /// Both lobes with one over what of them is above the horizon.
+    fn lobes(&self, shapes: &Shapes) -> [(Lobe, f64); 2] {
+        [lobe(self.alpha, self.eye, &shapes[..4]), lobe(self.alpha, self.eye, &shapes[4..])].map(|l| {
+            let whole = 1.0 / l.above();
+            (l, whole)
         })
-        .collect();
-    for _ in 0..400 {
-        simplex.sort_by(|a, b| a.1.total_cmp(&b.1));
-        let (best, worst) = (simplex[0], simplex[N]);
-        let spread: f64 = (0..N).map(|i| (best.0[i] - worst.0[i]).abs()).fold(0.0, f64::max);
-        if spread < 1e-6 {
-            break;
-        }
-        let middle: Shape =
-            std::array::from_fn(|i| simplex[..N].iter().map(|s| s.0[i]).sum::<f64>() / N as f64);
-        let along = |t: f64| {
-            let x: Shape = std::array::from_fn(|i| middle[i] + t * (worst.0[i] - middle[i]));
-            (x, f(x))
-        };
-        let reflected = along(-1.0);
-        let next = if reflected.1 < best.1 {
-            let further = along(-2.0);
-            if further.1 < reflected.1 { further } else { reflected }
-        } else if reflected.1 < simplex[N - 1].1 {
-            reflected
-        } else {
-            along(if reflected.1 < worst.1 { -0.5 } else { 0.5 })
-        };
-        if next.1 < worst.1 {
-            simplex[N] = next;
-        } else {
-            for s in &mut simplex[1..] {
-                let x = std::array::from_fn(|i| 0.5 * (s.0[i] + best.0[i]));
-                *s = (x, f(x));
-            }
-        }
     }
-    simplex.sort_by(|a, b| a.1.total_cmp(&b.1));
-    simplex[0]
-}
 
-/// One row of the table: entries and the distance left, for every angle.
-fn row(alpha: f64, angles: usize, steps: usize) -> Vec<([f32; ENTRIES], f64)> {
-    let mut shape = None;
-    (0..angles)
-        .map(|j| {
-            let t = j as f64 / (angles - 1) as f64;
-            // At the horizon itself there is no lobe.
-            let target = Target::new(alpha, Lanes::max(1.0 - t * t, 1e-3), steps);
-            let guess = target.guess();
-            let steps = [0.2, 0.2, 0.1, 0.5 * Lanes::min(alpha, 0.4)];
-            let mut found = minimize(guess, steps, |x| target.distance(x));
-            if let Some(before) = shape {
-                let warm = minimize(before, steps, |x| target.distance(x));
-                if warm.1 < found.1 {
-                    found = warm;
+    /// The sum over places of a pair of those shapes, held near `near`.
+    fn trial(&self, shapes: &Shapes, near: &Shapes) -> Trial {
+        let [(a, a_whole), (b, b_whole)] = self.lobes(shapes);
+        let mut residuals = Vec::with_capacity(self.places.len() + UNKNOWN);
+        for p in &self.places {
+            let sum = (a.density(p.wi) * a_whole) * (1.0 - SHARE) + (b.density(p.wi) * b_whole) * SHARE;
+            residuals.push((p.value - sum) * (p.weight / (p.value + DIM)).sqrt());
+        }
+        for k in 0..UNKNOWN {
+            residuals.push(HOLD * (shapes[k] - near[k]));
+        }
+        let square = residuals.iter().map(|r| r * r).sum();
+        Trial { square: if square < f64::INFINITY { square } else { f64::MAX }, residuals }
+    }
+
+    /// The nearest pair from `start` on.
+    fn nearest(&self, start: Shapes) -> Shapes {
+        let (mut shapes, mut damping) = (start, 1e-2);
+        let mut best = self.trial(&shapes, &start);
+        for _ in 0..MOST_STEPS {
+            let mut slopes = Vec::with_capacity(UNKNOWN);
+            for k in 0..UNKNOWN {
+                let mut moved = shapes;
+                moved[k] += 1e-5;
+                slopes.push(self.trial(&moved, &start).residuals);
+            }
+            let mut normal = [[0.0; UNKNOWN]; UNKNOWN];
+            let mut right = [0.0; UNKNOWN];
+            for (i, now) in best.residuals.iter().enumerate() {
+                let row: Shapes = std::array::from_fn(|k| (slopes[k][i] - now) * 1e5);
+                for j in 0..UNKNOWN {
+                    right[j] -= row[j] * now;
+                    for k in 0..UNKNOWN {
+                        normal[j][k] += row[j] * row[k];
+                    }
                 }
             }
-            shape = Some(found.0);
-            let [xx, xz, zx, zz] = Sheared::new(found.0).lobe.inverse;
-            let entry = [xx, xz, zx / alpha, zz / alpha, target.magnitude, target.grazing];
-            (entry.map(|x| x as f32), found.1)
-        })
-        .collect()
+            let mut bettered = false;
+            for _ in 0..8 {
+                let mut damped = normal;
+                for (k, row) in damped.iter_mut().enumerate() {
+                    row[k] += damping * (row[k] + 1e-9);
+                }
+                let step = solve(damped, right);
+                let moved: Shapes = std::array::from_fn(|k| shapes[k] + step[k].clamp(-0.5, 0.5));
+                let trial = self.trial(&moved, &start);
+                if trial.square < best.square {
+                    bettered = trial.square < best.square * (1.0 - 1e-7);
+                    (shapes, best, damping) = (moved, trial, damping * 0.2);
+                    break;
+                }
+                damping *= 6.0;
+            }
+            if !bettered {
+                break;
+            }
+        }
+        shapes
+    }
+
+    /// Numbers of the table, and the distance that is left.
+    fn entry(&self, shapes: &Shapes) -> ([f32; ENTRIES], f64) {
+        let [(a, a_whole), (b, b_whole)] = self.lobes(shapes);
+        // The part of the grazing term that goes with the second lobe, by least squares; both sum to what it is.
+        let rest = self.grazing / self.magnitude;
+        let (mut top, mut bottom, mut left) = (0.0, 0.0, 0.0);
+        for p in &self.places {
+            let (f, g) = (a.density(p.wi) * a_whole, b.density(p.wi) * b_whole);
+            let weight = p.weight / (p.value + DIM);
+            top += weight * (p.value * p.grazing - rest * f) * (g - f);
+            bottom += weight * (g - f) * (g - f);
+            let sum = f + SHARE * (g - f);
+            if p.value + sum > 0.0 {
+                left += p.weight * (p.value - sum) * (p.value - sum) / (p.value + sum);
+            }
+        }
+        let second = if bottom > 0.0 { Lanes::min(Lanes::max(top / bottom, 0.0), rest) } else { 0.0 };
+        let [axx, axz, azx, azz] = a.inverse;
+        let [bxx, bxz, bzx, bzz] = b.inverse;
+        let (alpha, all) = (self.alpha, self.magnitude);
+        let entry = [
+            [axx, axz, azx / alpha, azz / alpha],
+            [bxx, bxz, bzx / alpha, bzz / alpha],
+            [all * (1.0 - SHARE), all * SHARE, all * (rest - second), all * second],
+        ];
+        let mut out = [0.0; ENTRIES];
+        for (out, x) in out.iter_mut().zip(entry.as_flattened()) {
+            *out = *x as f32;
+        }
+        (out, left)
+    }
 }
 
-/// A table of `rows` roughnesses and `angles` angles, fitted over `steps`² directions of both lobes, with the distance
-/// that is left at each.
+/// The solution of a positive definite system, by elimination.
+fn solve(mut a: [[f64; UNKNOWN]; UNKNOWN], mut b: Shapes) -> Shapes {
+    for i in 0..UNKNOWN {
+        let pivot = if a[i][i] != 0.0 { a[i][i] } else { f64::MIN_POSITIVE };
+        for j in i + 1..UNKNOWN {
+            let factor = a[j][i] / pivot;
+            for k in i..UNKNOWN {
+                a[j][k] -= factor * a[i][k];
+            }
+            b[j] -= factor * b[i];
+        }
+    }
+    for i in (0..UNKNOWN).rev() {
+        for k in i + 1..UNKNOWN {
+            b[i] -= a[i][k] * b[k];
+        }
+        b[i] /= if a[i][i] != 0.0 { a[i][i] } else { f64::MIN_POSITIVE };
+        if !b[i].is_finite() {
+            b[i] = 0.0;
+        }
+    }
+    b
+}
+
+/// The target of a column of `angles`; at the horizon itself there is no lobe.
+fn target(alpha: f64, column: usize, angles: usize, steps: usize) -> Target {
+    let t = column as f64 / (angles - 1) as f64;
+    Target::new(alpha, Lanes::max(1.0 - t * t, 1e-3), steps)
+}
+
+/// Where the rows of [`fit_ltc`] begin: seen from straight above there is neither shear nor tilt to find.
+fn first_column(
+    watch: &mut dyn Watch,
+    rows: usize,
+    angles: usize,
+    steps: usize,
+) -> Result<Vec<Shapes>, Interrupted> {
+    parallel::run_forking(watch, |stop| {
+        let mut starts = Vec::with_capacity(rows);
+        for i in (0..rows).rev() {
+            let target = target(alpha_of(i, rows), 0, angles, steps);
+            let start = starts.last().copied().unwrap_or_else(|| target.guess());
+            if stop.load(Ordering::Relaxed) {
+                starts.push(start);
+                continue;
+            }
+            let (warm, cold) = (target.nearest(start), target.nearest(target.guess()));
+            // The neighbour's kind, unless it is far from what there is.
+            let [near, far] = [warm, cold].map(|x| target.trial(&x, &x).square);
+            starts.push(if near > 4.0 * far { cold } else { warm });
+        }
+        starts.reverse();
+        starts
+    })
+}
+
+/// A table of `rows` roughnesses and `angles` angles, fitted over 3 · `steps`² directions, with the distance that is left
+/// at each: the triangular discrimination ∫ (f − g)² / (f + g) dω.
 pub fn fit_ltc(
     watch: &mut dyn Watch,
     rows: usize,
     angles: usize,
     steps: usize,
 ) -> Result<(Table, Vec<f64>), Interrupted> {
+    let starts = first_column(watch, rows, angles, steps)?;
     let slots: Vec<_> = (0..rows).map(|_| Mutex::new(Vec::new())).collect();
     parallel::run(watch, rows, |i| {
+        let mut row = Vec::with_capacity(angles);
+        let mut shapes = starts[i];
+        for j in 0..angles {
+            let target = target(alpha_of(i, rows), j, angles, steps);
+            let found = target.nearest(shapes);
+            row.push(target.entry(&found));
+            shapes = found;
+        }
         if let Ok(mut slot) = slots[i].lock() {
-            *slot = row(alpha_of(i, rows), angles, steps);
+            *slot = row;
         }
     })?;
     let done = slots.into_iter().flat_map(|s| s.into_inner().unwrap_or_default());

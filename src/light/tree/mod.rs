@@ -16,7 +16,7 @@ use crate::parallel::{self, Interrupted, Watch};
 use crate::real::Real;
 use crate::vec::Vec3;
 pub use source::Source;
-use source::least;
+use source::{least, most};
 use split::split;
 
 #[derive(Clone, Copy, Debug)]
@@ -48,8 +48,8 @@ pub enum Method {
 pub struct Selection<T> {
     method: Method,
     count: usize,
-    /// Sums of power up to and with each light.
-    cumulative: Vec<T>,
+    /// Sums of chances up to and with each light; in double, since differences of sums are chances.
+    cumulative: Vec<f64>,
     nodes: Vec<Node<T>>,
     /// For each light the turns from the root to its leaf, lowest bit first; NOWHERE beside the tree.
     trails: Vec<u64>,
@@ -58,6 +58,8 @@ pub struct Selection<T> {
 }
 
 const NOWHERE: u64 = u64::MAX;
+/// The least share of lights that may shine: of one branch of two, or of all lights together.
+const FAINTEST: f64 = 1.0 / 4096.0;
 
 impl<T: Real> Selection<T> {
     /// Over sources in the order of their lights. Sources without power are never chosen, but evenly.
@@ -73,14 +75,15 @@ impl<T: Real> Selection<T> {
         match method {
             Method::Uniform => {}
             Method::Power => {
+                let most = sources.iter().fold(0.0, |most, s| f64::max(most, s.power.to_f64()));
+                let total: f64 = sources.iter().map(|s| s.power.to_f64() / most).sum();
+                let floor = FAINTEST / sources.len() as f64;
                 let mut sum = 0.0;
-                made.cumulative = sources
-                    .iter()
-                    .map(|s| {
-                        sum += s.power.to_f64();
-                        T::of(sum)
-                    })
-                    .collect();
+                for source in sources {
+                    let share = source.power.to_f64() / most / total;
+                    sum += if share > 0.0 { f64::max(share, floor) } else { 0.0 };
+                    made.cumulative.push(sum);
+                }
             }
             Method::Tree => {
                 made.trails = vec![NOWHERE; sources.len()];
@@ -137,9 +140,14 @@ impl<T: Real> Selection<T> {
     fn shares(&self, at: usize, point: Vec3<T>, normal: Option<Vec3<T>>) -> Option<(usize, T)> {
         let second = self.nodes[at].next as usize;
         let [a, b] = [at + 1, second].map(|i| self.nodes[i].source.importance(point, normal));
-        let share = a / (a + b);
+        let mut share = a / (a + b);
+        // Bounds say what lights may bring, not what they do: none that may bring something is as good as left out.
+        if a > T::zero() && b > T::zero() {
+            let floor = T::of(FAINTEST);
+            share = least(most(share, floor), T::one() - floor);
+        }
         // Neither, or an overflow.
-        (share <= T::one()).then_some((second, share))
+        (share >= T::zero() && share <= T::one()).then_some((second, share))
     }
 
     /// A light for the point, if any may shine there; `u` in [0, 1).
@@ -158,12 +166,12 @@ impl<T: Real> Selection<T> {
             }
             Method::Power => {
                 let total = *self.cumulative.last()?;
-                let goal = u * total;
+                let goal = u.to_f64() * total;
                 let light = self.cumulative.partition_point(|&c| c <= goal);
                 let end = *self.cumulative.get(light)?;
-                let start = if light == 0 { T::zero() } else { self.cumulative[light - 1] };
-                let left = least((goal - start) / (end - start), below_one);
-                Some(Choice { light, chance: (end - start) / total, u: left })
+                let start = if light == 0 { 0.0 } else { self.cumulative[light - 1] };
+                let left = least(T::of((goal - start) / (end - start)), below_one);
+                Some(Choice { light, chance: T::of((end - start) / total), u: left })
             }
             Method::Tree => {
                 let of_tree = self.chance_of_tree();
@@ -197,9 +205,9 @@ impl<T: Real> Selection<T> {
         match self.method {
             Method::Uniform => one / T::of(self.count as f64),
             Method::Power => {
-                let start = if light == 0 { zero } else { self.cumulative[light - 1] };
+                let start = if light == 0 { 0.0 } else { self.cumulative[light - 1] };
                 let total = self.cumulative[self.count - 1];
-                if total > zero { (self.cumulative[light] - start) / total } else { zero }
+                if total > 0.0 { T::of((self.cumulative[light] - start) / total) } else { zero }
             }
             Method::Tree => {
                 let mut trail = self.trails[light];
@@ -243,7 +251,8 @@ pub fn select_many<T: Real>(
             dispatch!(_s => {
                 for i in 0..points.len() {
                     let (point, normal) = (Vec3::from(points[i]), Vec3::from(normals[i]));
-                    let nan = (point + normal).dot(Vec3::splat(T::zero())) + u[i] * T::zero();
+                    let inside = u[i] >= T::zero() && u[i] < T::one();
+                    let nan = if inside { (point + normal).dot(Vec3::splat(T::zero())) } else { T::NAN };
                     let normal = (normal != Vec3::splat(T::zero())).then_some(normal);
                     let choice = if nan.is_nan() { None } else { selection.draw(point, normal, u[i]) };
                     (light[i], chance[i]) = choice.map_or((-1, nan), |c| (c.light as i32, c.chance));

@@ -21,6 +21,9 @@ pub struct Source<T> {
     pub power: T,
 }
 
+/// What the direction of lights that shine past a right angle counts at least.
+const WIDE: f64 = 0.05;
+
 impl<T: Real> Source<T> {
     /// From corners that span a flat piece with a unit normal.
     pub fn of_flat(corners: &[Vec3<T>], normal: Vec3<T>, two_sided: bool, power: T) -> Self {
@@ -142,7 +145,8 @@ impl<T: Real> Source<T> {
         if at_light <= self.cos_reach {
             return zero;
         }
-        result *= at_light;
+        // A spot that shines past a right angle has no cosine, but a falloff of its own.
+        result *= if self.cos_reach < zero { most(at_light, T::of(WIDE)) } else { at_light };
         if let Some(n) = normal
             && !near
         {
