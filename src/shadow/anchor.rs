@@ -26,10 +26,39 @@ pub struct Bias<T> {
     pub plane: bool,
 }
 
-/// Receivers as the map sees them: where they fall, and the planes that depths are compared with.
+/// Where receivers fall in a map, and how their tangent planes lie there.
+#[derive(Clone, Copy)]
+pub struct Feet<V> {
+    /// Texel coordinates.
+    pub x: V,
+    pub y: V,
+    pub depth: V,
+    /// One by it.
+    inverse: V,
+    /// Change of the plane per texel: of its reciprocal depth (perspective) or of its depth.
+    gx: V,
+    gy: V,
+    /// Depth that may be nothing but rounding: a few units in the last place of the receiver's coordinates, of the
+    /// light's, and of the depth itself.
+    pub rounding: V,
+    /// A bit for each receiver that there is something to look up for.
+    pub live: u64,
+    /// What the others get: NaN for NaN, 1 behind the light.
+    pub answer: V,
+}
+
+impl<V: Lanes> Feet<V> {
+    /// How much depth the receivers' planes gain over a texel across and one down.
+    #[inline(always)]
+    pub fn gain<const PERSPECTIVE: bool>(&self) -> [V; 2] {
+        let per = if PERSPECTIVE { self.depth * self.depth } else { self.depth.num(1.0) };
+        [self.gx.abs() * per, self.gy.abs() * per]
+    }
+}
+
+/// Receivers as depths are compared with them.
 #[derive(Clone, Copy)]
 pub struct Anchor<V> {
-    /// Texel coordinates.
     pub x: V,
     pub y: V,
     pub depth: V,
@@ -42,9 +71,8 @@ pub struct Anchor<V> {
     gy: V,
     /// Perspective: depth times reciprocal plane depth below which a texel blocks.
     limit: V,
-    /// A bit for each receiver that there is something to look up for.
+    /// As of [`Feet`].
     pub live: u64,
-    /// What the others get: NaN for NaN, 1 behind the light.
     pub answer: V,
 }
 
@@ -96,6 +124,30 @@ pub fn put<T: Real, S: Simd>(out: &mut [T], first: usize, bits: u64, values: T::
     }
 }
 
+/// Filters beyond twice the map's extent see nothing more.
+#[inline(always)]
+pub fn limited<T: Real, S: Simd>(s: S, map: &Map<'_, T>, [x, y]: [T::V8<S>; 2]) -> [T::V8<S>; 2] {
+    let limit = all::<T, S>(s, map.extent() + map.extent());
+    [Lanes::min(x, limit), Lanes::min(y, limit)]
+}
+
+/// The light's image on planes at `blocker`, seen from receivers at `depth` and projected into the map: its half
+/// sides in texels. At the receiver and behind it there is none.
+#[inline(always)]
+pub fn light_image<T: Real, S: Simd, const PERSPECTIVE: bool>(
+    s: S,
+    map: &Map<'_, T>,
+    depth: T::V8<S>,
+    light: [T; 2],
+    blocker: T::V8<S>,
+) -> [T::V8<S>; 2] {
+    let one = all::<T, S>(s, T::one());
+    let reach = if PERSPECTIVE { one / blocker - one / depth } else { depth - blocker };
+    let reach = Lanes::max(reach, all::<T, S>(s, T::zero())) * all::<T, S>(s, T::of(0.5));
+    let (x, y) = (light[0] * map.scale[0], light[1] * map.scale[1]);
+    limited::<T, S>(s, map, [reach * all::<T, S>(s, x), reach * all::<T, S>(s, y)])
+}
+
 /// `found` where there was something to look up.
 #[inline(always)]
 pub fn or_answer<T: Real, S: Simd>(s: S, a: &Anchor<T::V8<S>>, found: T::V8<S>) -> T::V8<S> {
@@ -103,16 +155,16 @@ pub fn or_answer<T: Real, S: Simd>(s: S, a: &Anchor<T::V8<S>>, found: T::V8<S>) 
 }
 
 impl<T: Real> Map<'_, T> {
-    /// Receivers from `first` of the lists on, as depths are compared with them.
+    /// Where receivers from `first` of the lists on fall.
     #[inline(always)]
-    pub fn anchor<S: Simd, const PERSPECTIVE: bool>(
+    pub fn feet<S: Simd, const PERSPECTIVE: bool>(
         &self,
         s: S,
         points: &[[T; 3]],
         normals: Option<&[[T; 3]]>,
         first: usize,
-        bias: &Bias<T>,
-    ) -> Anchor<T::V8<S>> {
+        normal_offset: T,
+    ) -> Feet<T::V8<S>> {
         let (zero, one) = (all::<T, S>(s, T::zero()), all::<T, S>(s, T::one()));
         let point = lot::<T, S>(s, points, first);
         let away = point - wide::<T, S>(s, self.origin);
@@ -128,7 +180,7 @@ impl<T: Real> Map<'_, T> {
             let n = lot::<T, S>(s, normals, first);
             let n = Vec3::new(frame[0].dot(n), frame[1].dot(n), frame[2].dot(n));
             // Move along the normal by texels of the size that they have at the receiver's depth.
-            if bias.normal_offset > T::zero() {
+            if normal_offset > T::zero() {
                 let texel = Lanes::max(texel_x, texel_y);
                 let (texel, cosine) = if PERSPECTIVE {
                     (texel * q.z, -n.dot(q) / Lanes::sqrt(q.dot(q)))
@@ -136,7 +188,7 @@ impl<T: Real> Map<'_, T> {
                     (texel, -n.z)
                 };
                 let sine = Lanes::sqrt(Lanes::max(one - cosine * cosine, zero));
-                q = q + n * (all::<T, S>(s, bias.normal_offset) * texel * sine);
+                q = q + n * (all::<T, S>(s, normal_offset) * texel * sine);
             }
             check = n.x + n.y + n.z;
             // Below zero where the plane looks at the light.
@@ -154,26 +206,42 @@ impl<T: Real> Map<'_, T> {
         let x = (u - all::<T, S>(s, self.corner[0])) * all::<T, S>(s, self.scale[0]);
         let y = (all::<T, S>(s, self.corner[1]) - v) * all::<T, S>(s, self.scale[1]);
 
+        let of_point = Lanes::max(Lanes::max(Lanes::abs(point.x), Lanes::abs(point.y)), Lanes::abs(point.z));
+        let sizes = Lanes::abs(q.z) + of_point + all::<T, S>(s, largest(self.origin.to_array()));
+        let rounding = all::<T, S>(s, T::of(ROUNDINGS) * T::EPSILON) * sizes;
+        let live = (numbers & before).to_bitmask();
+        let answer = numbers.select(one, all::<T, S>(s, T::NAN));
+        Feet { x, y, depth: q.z, inverse, gx, gy, rounding, live, answer }
+    }
+
+    /// Receivers from `first` of the lists on, as depths are compared with them.
+    #[inline(always)]
+    pub fn anchor<S: Simd, const PERSPECTIVE: bool>(
+        &self,
+        s: S,
+        points: &[[T; 3]],
+        normals: Option<&[[T; 3]]>,
+        first: usize,
+        bias: &Bias<T>,
+    ) -> Anchor<T::V8<S>> {
+        let (zero, one) = (all::<T, S>(s, T::zero()), all::<T, S>(s, T::one()));
+        let Feet { x, y, depth, inverse, mut gx, mut gy, rounding, live, answer } =
+            self.feet::<S, PERSPECTIVE>(s, points, normals, first, bias.normal_offset);
         let steep = Lanes::abs(gx) + Lanes::abs(gy);
         if !bias.plane {
             (gx, gy) = (zero, zero);
         }
-        // Rounding is granted always: see `Foot::rounding`.
-        let of_point = Lanes::max(Lanes::max(Lanes::abs(point.x), Lanes::abs(point.y)), Lanes::abs(point.z));
-        let sizes = Lanes::abs(q.z) + of_point + all::<T, S>(s, largest(self.origin.to_array()));
-        let rounding = all::<T, S>(s, T::of(ROUNDINGS) * T::EPSILON) * sizes;
+        // Rounding is granted always.
         let constant = all::<T, S>(s, bias.constant) + rounding;
         let slope = all::<T, S>(s, bias.slope) * steep;
         let (key, limit) = if PERSPECTIVE {
-            (inverse, one - constant * inverse - slope * q.z)
+            (inverse, one - constant * inverse - slope * depth)
         } else {
-            (q.z - (constant + slope), one)
+            (depth - (constant + slope), one)
         };
         let half = all::<T, S>(s, T::of(0.5));
         let base = key + gx * (half - x) + gy * (half - y);
-        let live = (numbers & before).to_bitmask();
-        let answer = numbers.select(one, all::<T, S>(s, T::NAN));
-        Anchor { x, y, depth: q.z, key, base, gx, gy, limit, live, answer }
+        Anchor { x, y, depth, key, base, gx, gy, limit, live, answer }
     }
 
     /// Depths of the texels at offsets (in texels) from receivers, and whether each blocks its own.

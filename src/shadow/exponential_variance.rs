@@ -6,13 +6,13 @@
 //! A. Lauritzen, M. McCool, *Layered Variance Shadow Maps*, GI 2008.
 
 use crate::math;
-use crate::real::{Lanes, Real};
+use crate::real::Lanes;
 use crate::shadow::variance::chebyshev_bound;
 
 /// The bound from the moments of e^(az), and from those of −e^(−bz) where `b` is given. `least` is the least variance
 /// of depth that counts, which each exponential stretches by its slope at `t`.
 #[inline(always)]
-pub fn exponential_bound<T: Real>(m: [T; 4], t: T, a: T, b: Option<T>, least: T) -> T {
+pub fn exponential_bound<V: Lanes>(m: [V; 4], t: V, a: V, b: Option<V>, least: V) -> V {
     let e = math::exp(a * t);
     let upper = chebyshev_bound(m[0], m[1], e, least * (a * e) * (a * e));
     match b {
@@ -20,7 +20,8 @@ pub fn exponential_bound<T: Real>(m: [T; 4], t: T, a: T, b: Option<T>, least: T)
         Some(b) => {
             let f = math::exp(-b * t);
             let lower = chebyshev_bound(m[2], m[3], -f, least * (b * f) * (b * f));
-            if upper.is_nan() { upper } else { Lanes::min(upper, lower) }
+            // NaN of either stays: `min` returns the second of its two.
+            V::select(upper.equal(upper), upper.min(lower), upper)
         }
     }
 }

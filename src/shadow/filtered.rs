@@ -6,7 +6,10 @@
 
 use crate::math;
 use crate::real::{Lanes, Real};
+use crate::shadow::anchor::{all, lanes};
+use crate::shadow::lookup::LOT;
 use crate::shadow::moment_map::{Stored, Warp, powers};
+use crate::simd::*;
 
 /// Where a level lies among the values, in texels.
 #[derive(Clone, Copy, Debug)]
@@ -16,11 +19,19 @@ pub struct Level {
     pub height: usize,
 }
 
+/// A level as it is looked up: its size against the first's, and its last texel.
+#[derive(Clone, Copy)]
+struct Scaled<T> {
+    level: Level,
+    share: [T; 2],
+    last: [T; 2],
+}
+
 /// Moments of `C` channels.
 pub struct Filtered<'a, T, E, const C: usize> {
     values: &'a [[E; C]],
     /// One, or those of a chain; of a table its own size.
-    levels: Vec<Level>,
+    levels: Vec<Scaled<T>>,
     table: bool,
     /// Texels of this map in one of the depth map.
     scale: T,
@@ -43,20 +54,74 @@ impl<'a, T: Real, E: Stored, const C: usize> Filtered<'a, T, E, C> {
             fits &= l.width.min(l.height) >= least && end.is_some_and(|n| n <= values.len());
             fits &= l.width.max(l.height) < 1 << 22;
         }
-        fits.then(|| Filtered { values, levels, table, scale: T::one() / T::of(reduce as f64), warp })
+        if !fits {
+            return None;
+        }
+        let whole = levels[0];
+        let scaled = |level: Level| Scaled {
+            level,
+            share: [
+                T::of(level.width as f64 / whole.width as f64),
+                T::of(level.height as f64 / whole.height as f64),
+            ],
+            last: [T::of((level.width - 1) as f64), T::of((level.height - 1) as f64)],
+        };
+        let levels = levels.into_iter().map(scaled).collect();
+        Some(Filtered { values, levels, table, scale: T::one() / T::of(reduce as f64), warp })
     }
 
-    /// The mean over a box about (x, y), of the given half sides, all in texels of the depth map.
+    /// The means, as powers whatever they are stored as, over boxes about (x, y) of the given half sides, all in texels
+    /// of the depth map; of those receivers whose bit is set.
     #[inline(always)]
-    pub fn mean(&self, x: T, y: T, half: [T; 2]) -> [T; C] {
-        let (x, y, half) = (x * self.scale, y * self.scale, [half[0] * self.scale, half[1] * self.scale]);
-        if self.table {
-            self.of_box(x, y, half)
-        } else if self.levels.len() > 1 {
-            self.of_mips(x, y, half)
-        } else {
-            self.between(self.levels[0], x, y)
+    pub fn means<S: Simd>(
+        &self,
+        s: S,
+        live: u64,
+        (x, y): (T::V8<S>, T::V8<S>),
+        half: [T::V8<S>; 2],
+    ) -> [T::V8<S>; 4] {
+        let scale = all::<T, S>(s, self.scale);
+        let (x, y, half) = (x * scale, y * scale, [half[0] * scale, half[1] * scale]);
+        let level = self.level(s, half);
+        let mut out = [[T::zero(); LOT]; 4];
+        for k in 0..LOT {
+            if live >> k & 1 == 0 {
+                continue;
+            }
+            let (x, y) = (x.as_slice()[k], y.as_slice()[k]);
+            let m = if self.table {
+                self.of_box(x, y, [half[0].as_slice()[k], half[1].as_slice()[k]])
+            } else if self.levels.len() > 1 {
+                self.of_mips(x, y, level.as_slice()[k])
+            } else {
+                self.between(&self.levels[0], x, y)
+            };
+            let mut four = [T::zero(); 4];
+            four[..C].copy_from_slice(&m);
+            let four = if E::QUANTIZED { powers(four) } else { four };
+            for c in 0..4 {
+                out[c][k] = four[c];
+            }
         }
+        [
+            lanes::<T, S>(s, out[0]),
+            lanes::<T, S>(s, out[1]),
+            lanes::<T, S>(s, out[2]),
+            lanes::<T, S>(s, out[3]),
+        ]
+    }
+
+    /// The mip whose kernel has the variance of a box: a texel of width w, read between its neighbours, has that of a
+    /// box of width √3 w.
+    #[inline(always)]
+    fn level<S: Simd>(&self, s: S, half: [T::V8<S>; 2]) -> T::V8<S> {
+        if self.table || self.levels.len() == 1 {
+            return all::<T, S>(s, T::zero());
+        }
+        let wide = Lanes::max(half[0], half[1]) * all::<T, S>(s, T::of(2.0 / 1.732_050_807_568_877_2));
+        let level = math::ln(Lanes::max(wide, all::<T, S>(s, T::one())));
+        let level = level * all::<T, S>(s, T::of(1.0 / std::f64::consts::LN_2));
+        Lanes::min(level, all::<T, S>(s, T::of((self.levels.len() - 1) as f64)))
     }
 
     #[inline(always)]
@@ -69,11 +134,12 @@ impl<'a, T: Real, E: Stored, const C: usize> Filtered<'a, T, E, C> {
         out
     }
 
-    /// Between the four texels of a level about a place; beyond the border lies the nearest texel.
+    /// Between the four texels of a level about a place of the first; beyond the border lies the nearest texel.
     #[inline(always)]
-    fn between(&self, level: Level, x: T, y: T) -> [T; C] {
-        let (x0, x1, fx) = neighbours(x - T::of(0.5), level.width);
-        let (y0, y1, fy) = neighbours(y - T::of(0.5), level.height);
+    fn between(&self, at: &Scaled<T>, x: T, y: T) -> [T; C] {
+        let level = at.level;
+        let (x0, x1, fx) = neighbours(x * at.share[0] - T::of(0.5), at.last[0]);
+        let (y0, y1, fy) = neighbours(y * at.share[1] - T::of(0.5), at.last[1]);
         let (up, down) = (level.first + y0 * level.width, level.first + y1 * level.width);
         let (a, b) = (self.texel(up + x0), self.texel(up + x1));
         let (c, d) = (self.texel(down + x0), self.texel(down + x1));
@@ -85,20 +151,16 @@ impl<'a, T: Real, E: Stored, const C: usize> Filtered<'a, T, E, C> {
         out
     }
 
-    /// Between two levels. A texel of width w, read between its neighbours, has the variance of a box of width √3 w.
+    /// Between two levels.
     #[inline(always)]
-    fn of_mips(&self, x: T, y: T, half: [T; 2]) -> [T; C] {
-        let wide = (half[0].max(half[1])) * T::of(2.0 / 1.732_050_807_568_877_2);
-        let top = self.levels.len() - 1;
-        let level = math::ln(wide.max(T::one())) * T::of(1.0 / std::f64::consts::LN_2);
-        let level = Lanes::min(level, T::of(top as f64));
+    fn of_mips(&self, x: T, y: T, level: T) -> [T; C] {
         let low = level.floor();
         let (l, share) = (low.to_f64() as usize, level - low);
-        let fine = self.at_level(l, x, y);
+        let fine = self.between(&self.levels[l], x, y);
         if !(share > T::zero()) {
             return fine;
         }
-        let coarse = self.at_level(l + 1, x, y);
+        let coarse = self.between(&self.levels[l + 1], x, y);
         let mut out = [T::zero(); C];
         for k in 0..C {
             out[k] = fine[k] + (coarse[k] - fine[k]) * share;
@@ -106,18 +168,10 @@ impl<'a, T: Real, E: Stored, const C: usize> Filtered<'a, T, E, C> {
         out
     }
 
-    #[inline(always)]
-    fn at_level(&self, l: usize, x: T, y: T) -> [T; C] {
-        let (whole, level) = (self.levels[0], self.levels[l]);
-        let across = T::of(level.width as f64 / whole.width as f64);
-        let down = T::of(level.height as f64 / whole.height as f64);
-        self.between(level, x * across, y * down)
-    }
-
     /// The mean over a box, not smaller than a texel, and cut at the map's border.
     #[inline(always)]
     fn of_box(&self, x: T, y: T, half: [T; 2]) -> [T; C] {
-        let size = self.levels[0];
+        let size = self.levels[0].level;
         let (x0, x1) = span(x, half[0], size.width - 1);
         let (y0, y1) = span(y, half[1], size.height - 1);
         let per = 1.0 / ((x1 - x0) * (y1 - y0));
@@ -135,7 +189,7 @@ impl<'a, T: Real, E: Stored, const C: usize> Filtered<'a, T, E, C> {
     /// The table at `right` less that at `left`, both between two rows. In double, whatever is stored.
     #[inline(always)]
     fn difference(&self, row: (usize, f64), left: (usize, f64), right: (usize, f64)) -> [f64; C] {
-        let width = self.levels[0].width;
+        let width = self.levels[0].level.width;
         let mut out = [0.0; C];
         for (j, share) in [(row.0, 1.0 - row.1), (row.0 + 1, row.1)] {
             let at = j * width;
@@ -148,25 +202,15 @@ impl<'a, T: Real, E: Stored, const C: usize> Filtered<'a, T, E, C> {
         }
         out
     }
-
-    /// The mean as powers, whatever they are stored as.
-    #[inline(always)]
-    pub fn mean_powers(&self, x: T, y: T, half: [T; 2]) -> [T; 4] {
-        let m = self.mean(x, y, half);
-        let mut four = [T::zero(); 4];
-        four[..C].copy_from_slice(&m);
-        if E::QUANTIZED { powers(four) } else { four }
-    }
 }
 
 /// The texels before and after a place, where texel i is at i, and how far it is between them.
 #[inline(always)]
-fn neighbours<T: Real>(x: T, n: usize) -> (usize, usize, T) {
-    let last = T::of((n - 1) as f64);
+fn neighbours<T: Real>(x: T, last: T) -> (usize, usize, T) {
     let x = Lanes::min(Lanes::max(x, T::zero()), last);
     let low = x.floor();
-    let i = low.to_f64() as usize;
-    (i, if i + 1 < n { i + 1 } else { i }, x - low)
+    let next = Lanes::min(low + T::one(), last);
+    (low.to_f64() as usize, next.to_f64() as usize, x - low)
 }
 
 /// From and to of a box on [0, n], at least one texel wide (or the whole of a map of one).

@@ -153,94 +153,26 @@ fn into_frame<T: Real>([right, up, axis]: [Vec3<T>; 3], v: Vec3<T>) -> Vec3<T> {
     Vec3::new(right.dot(v), up.dot(v), axis.dot(v))
 }
 
-/// The light's image on a plane at `blocker`, seen from a receiver at `depth` and projected into the map: its half
-/// sides in texels. At the receiver and behind it there is none.
-#[inline(always)]
-pub fn light_image<T: Real, const PERSPECTIVE: bool>(
-    map: &Map<'_, T>,
-    depth: T,
-    light: [T; 2],
-    blocker: T,
-) -> [T; 2] {
-    let reach = if PERSPECTIVE { T::one() / blocker - T::one() / depth } else { depth - blocker };
-    let reach = reach.max(T::zero()) * T::of(0.5);
-    [light[0] * reach * map.scale[0], light[1] * reach * map.scale[1]]
-}
-
-/// Where a receiver falls in a map, and how its tangent plane lies there.
+/// Where a receiver falls in a map.
 #[derive(Clone, Copy)]
 pub struct Foot<T> {
     /// Texel coordinates.
     pub x: T,
     pub y: T,
     pub depth: T,
-    /// Change of the plane per texel: of its reciprocal depth (perspective) or of its depth.
-    gx: T,
-    gy: T,
-    /// Depth that may be nothing but rounding: a few units in the last place of the receiver's coordinates, of the
-    /// light's, and of the depth itself.
-    pub rounding: T,
-}
-
-impl<T: Real> Foot<T> {
-    /// How much depth the receiver's plane gains over a texel across and one down.
-    #[inline(always)]
-    pub fn gain<const PERSPECTIVE: bool>(&self) -> [T; 2] {
-        let per = if PERSPECTIVE { self.depth * self.depth } else { T::one() };
-        [self.gx.abs() * per, self.gy.abs() * per]
-    }
 }
 
 impl<T: Real> Map<'_, T> {
-    /// Where a receiver falls; `Err` holds the answer where there is nothing to look up: NaN for NaN, 1 behind the
-    /// light.
+    /// Where a point falls; none for NaN and behind the light. See [`Map::feet`] for many at a time.
     #[inline(always)]
-    pub fn foot<const PERSPECTIVE: bool>(
-        &self,
-        point: [T; 3],
-        normal: Option<[T; 3]>,
-        normal_offset: T,
-    ) -> Result<Foot<T>, T> {
-        let (zero, one) = (T::zero(), T::one());
-        let mut q = into_frame(self.frame, Vec3::from(point) - self.origin);
-        #[allow(clippy::manual_map)] // As in `at`.
-        let n = match normal {
-            Some(n) => Some(into_frame(self.frame, n.into())),
-            None => None,
-        };
-
-        // Move along the normal by texels of the size that they have at the receiver's depth.
-        if let Some(n) = n
-            && normal_offset > zero
-        {
-            let texel = self.texel[0].max(self.texel[1]);
-            let (texel, cosine) =
-                if PERSPECTIVE { (texel * q.z, -n.dot(q) / q.length()) } else { (texel, -n.z) };
-            q = q + n * (normal_offset * texel * (one - cosine * cosine).max(zero).sqrt());
+    pub fn foot<const PERSPECTIVE: bool>(&self, point: [T; 3]) -> Option<Foot<T>> {
+        let q = into_frame(self.frame, Vec3::from(point) - self.origin);
+        if (q.x + q.y + q.z).is_nan() || (PERSPECTIVE && !(q.z > T::zero())) {
+            return None;
         }
-        let of_normal = if let Some(n) = n { n.x + n.y + n.z } else { zero };
-        if (q.x + q.y + q.z + of_normal).is_nan() {
-            return Err(T::NAN);
-        }
-        if PERSPECTIVE && !(q.z > zero) {
-            return Err(one);
-        }
-
-        let inverse = one / q.z;
+        let inverse = T::one() / q.z;
         let (s, t) = if PERSPECTIVE { (q.x * inverse, q.y * inverse) } else { (q.x, q.y) };
         let (x, y) = ((s - self.corner[0]) * self.scale[0], (self.corner[1] - t) * self.scale[1]);
-
-        // The tangent plane's change per texel, where it faces the light.
-        let (mut gx, mut gy) = (zero, zero);
-        if let Some(n) = n {
-            let facing = if PERSPECTIVE { n.dot(q) } else { -n.z };
-            if (PERSPECTIVE && facing < zero) || (!PERSPECTIVE && facing > zero) {
-                let per = one / facing;
-                (gx, gy) = (n.x * per * self.texel[0], -n.y * per * self.texel[1]);
-            }
-        }
-        let rounding = ROUNDINGS * T::EPSILON.to_f64();
-        let rounding = T::of(rounding) * (q.z.abs() + largest(point) + largest(self.origin.to_array()));
-        Ok(Foot { x, y, depth: q.z, gx, gy, rounding })
+        Some(Foot { x, y, depth: q.z })
     }
 }

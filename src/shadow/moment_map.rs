@@ -61,14 +61,14 @@ pub struct Warp<T> {
 
 impl<T: Real> Warp<T> {
     #[inline(always)]
-    pub fn of(self, depth: T) -> T {
-        let z = (depth - self.middle) * self.per;
-        if z.is_nan() { z } else { Lanes::max(Lanes::min(z, T::one()), -T::one()) }
+    pub fn of<V: Lanes<Elem = T>>(self, depth: V) -> V {
+        let (z, one) = ((depth - depth.like(self.middle)) * depth.like(self.per), depth.num(1.0));
+        V::select(z.equal(z), z.min(one).max(-one), z)
     }
 
     #[inline(always)]
-    pub fn back(self, z: T) -> T {
-        self.middle + z / self.per
+    pub fn back<V: Lanes<Elem = T>>(self, z: V) -> V {
+        z.like(self.middle) + z / z.like(self.per)
     }
 }
 

@@ -5,7 +5,7 @@
 use crate::dispatch;
 use crate::parallel::{self, Interrupted, Watch};
 use crate::real::{Lanes, Real};
-use crate::shadow::anchor::{Anchor, Bias, all, or_answer, put};
+use crate::shadow::anchor::{Anchor, Bias, all, limited, or_answer, put};
 use crate::shadow::lookup::{LOT, Map};
 use crate::shadow::pattern::{Pattern, Turn};
 use crate::simd::*;
@@ -77,13 +77,6 @@ fn body<T: Real, S: Simd, const PERSPECTIVE: bool>(
         }
         i += LOT;
     }
-}
-
-/// Filters beyond twice the map's extent see nothing more.
-#[inline(always)]
-pub fn limited<T: Real, S: Simd>(s: S, map: &Map<'_, T>, [x, y]: [T::V8<S>; 2]) -> [T::V8<S>; 2] {
-    let limit = all::<T, S>(s, map.extent() + map.extent());
-    [Lanes::min(x, limit), Lanes::min(y, limit)]
 }
 
 /// The share of taps that do not block.

@@ -13,10 +13,10 @@
 use crate::dispatch;
 use crate::parallel::{self, Interrupted, Watch};
 use crate::real::{Lanes, Real};
-use crate::shadow::anchor::{Anchor, Bias, Mask, all, mask, or_answer, put};
+use crate::shadow::anchor::{Anchor, Bias, Mask, all, light_image, mask, or_answer, put};
 use crate::shadow::lookup::{LOT, Map};
 use crate::shadow::pattern::{Pattern, Turn};
-use crate::shadow::pcf::{limited, lit_fraction};
+use crate::shadow::pcf::lit_fraction;
 use crate::simd::*;
 
 /// The knobs; `light` is the light's sides along the map's right and up: in world units for a perspective map, as
@@ -94,22 +94,6 @@ fn body<T: Real, S: Simd, const PERSPECTIVE: bool>(
         }
         i += LOT;
     }
-}
-
-/// The light's image on a plane at the blocker: see [`crate::shadow::lookup::light_image`].
-#[inline(always)]
-fn light_image<T: Real, S: Simd, const PERSPECTIVE: bool>(
-    s: S,
-    map: &Map<'_, T>,
-    depth: T::V8<S>,
-    light: [T; 2],
-    blocker: T::V8<S>,
-) -> [T::V8<S>; 2] {
-    let one = all::<T, S>(s, T::one());
-    let reach = if PERSPECTIVE { one / blocker - one / depth } else { depth - blocker };
-    let reach = Lanes::max(reach, all::<T, S>(s, T::zero())) * all::<T, S>(s, T::of(0.5));
-    let (x, y) = (light[0] * map.scale[0], light[1] * map.scale[1]);
-    limited::<T, S>(s, map, [reach * all::<T, S>(s, x), reach * all::<T, S>(s, y)])
 }
 
 #[inline(always)]

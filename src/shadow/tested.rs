@@ -3,12 +3,14 @@
 use crate::dispatch;
 use crate::parallel::{self, Interrupted, Watch};
 use crate::real::{Lanes, Real};
+use crate::shadow::anchor::{Feet, all, lanes, mask, put};
 use crate::shadow::exponential_variance::exponential_bound;
 use crate::shadow::filtered::Filtered;
-use crate::shadow::lookup::{Foot, Map, at};
+use crate::shadow::lookup::{LOT, Map};
 use crate::shadow::moment::{Support, biased, extremal};
 use crate::shadow::moment_map::Stored;
 use crate::shadow::variance::{chebyshev_bound, without_bleeding};
+use crate::simd::*;
 
 /// The bound, and its knobs.
 #[derive(Clone, Copy, Debug)]
@@ -32,59 +34,129 @@ pub struct Granted<T> {
 }
 
 impl<T: Real> Test<T> {
-    /// The most of the light that a receiver at `t` may see.
+    /// The most of the light that receivers at `t` may see, and the mean of the blockers' depths (t without any).
     #[inline(always)]
-    pub fn lit(&self, m: [T; 4], t: T) -> T {
-        self.blockers(m, t).0
-    }
-
-    /// That, and the mean of the blockers' depths (t without any).
-    #[inline(always)]
-    pub fn blockers(&self, m: [T; 4], t: T) -> (T, T) {
-        let one = T::one();
+    pub fn blockers<S: Simd>(&self, s: S, m: [T::V8<S>; 4], t: T::V8<S>) -> (T::V8<S>, T::V8<S>) {
+        let one = all::<T, S>(s, T::one());
         let lit = match *self {
-            Test::Variance { least } => chebyshev_bound(m[0], m[1], t, least),
-            Test::Exponential { a, b, least } => exponential_bound(m, t, a, b, least),
+            Test::Variance { least } => chebyshev_bound(m[0], m[1], t, all::<T, S>(s, least)),
+            Test::Exponential { a, b, least } => {
+                #[allow(clippy::manual_map)] // A closure would not be compiled for the level unless inlined.
+                let b = match b {
+                    Some(b) => Some(all::<T, S>(s, b)),
+                    None => None,
+                };
+                exponential_bound(m, t, all::<T, S>(s, a), b, all::<T, S>(s, least))
+            }
             Test::Moment { support, alpha, target } => {
-                let wide = [m[0].to_f64(), m[1].to_f64(), m[2].to_f64(), m[3].to_f64()];
-                let (b, z) = (biased(wide, alpha, target), t.to_f64());
-                let of_moments = b[0] + b[1] + b[2] + b[3] + z;
-                if of_moments.is_nan() {
-                    return (T::NAN, T::NAN);
-                }
-                let (share, depth) = extremal(b, z, support).before(z);
-                let share = Lanes::min(share, 1.0);
-                return (T::of(1.0 - share), if share > 0.0 { T::of(depth / share) } else { t });
+                return of_moments::<T, S>(s, m, t, support, alpha, target);
             }
         };
         // What is not nearer is taken to lie at the receiver's depth.
-        (lit, if lit < one { (m[0] - lit * t) / (one - lit) } else { t })
+        let blocked = lit.simd_lt(one);
+        (lit, blocked.select((m[0] - lit * t) / (one - lit), t))
     }
 }
 
-/// What one lookup found.
-#[derive(Clone, Copy)]
-pub struct Found<T> {
-    pub lit: T,
-    /// The filtered moments, and the depth on their scale that they were asked about.
-    pub moments: [T; 4],
-    pub t: T,
+/// The bound of four moments, in double whatever theirs: see [`crate::shadow::moment::moment_bound`].
+#[inline(always)]
+fn of_moments<T: Real, S: Simd>(
+    s: S,
+    m: [T::V8<S>; 4],
+    t: T::V8<S>,
+    support: Support,
+    alpha: f64,
+    target: f64,
+) -> (T::V8<S>, T::V8<S>) {
+    let [m0, m1, m2, m3] = m;
+    let check = m0 + m1 + m2 + m3 + t;
+    let wide = [double::<T, S>(s, m0), double::<T, S>(s, m1), double::<T, S>(s, m2), double::<T, S>(s, m3)];
+    let (b, z) = (biased(wide, all::<f64, S>(s, alpha), all::<f64, S>(s, target)), double::<T, S>(s, t));
+    let (share, depth) = extremal(b, z, support).before(z);
+    let (zero, one) = (all::<f64, S>(s, 0.0), all::<f64, S>(s, 1.0));
+    let share = Lanes::min(share, one);
+    let depth = share.simd_gt(zero).select(depth / share, z);
+    let (numbers, nan) = (check.simd_eq(check), all::<T, S>(s, T::NAN));
+    (numbers.select(single::<T, S>(s, one - share), nan), numbers.select(single::<T, S>(s, depth), nan))
 }
 
-/// The lookup at a place of the map, over a box of half sides in texels.
 #[inline(always)]
-pub fn tested<T: Real, E: Stored, const C: usize>(
+fn double<T: Real, S: Simd>(s: S, v: T::V8<S>) -> <f64 as Real>::V8<S> {
+    let v = v.as_slice();
+    let mut wide = [0.0; LOT];
+    for k in 0..LOT {
+        wide[k] = v[k].to_f64();
+    }
+    lanes::<f64, S>(s, wide)
+}
+
+#[inline(always)]
+fn single<T: Real, S: Simd>(s: S, v: <f64 as Real>::V8<S>) -> T::V8<S> {
+    let v = v.as_slice();
+    let mut narrow = [T::zero(); LOT];
+    for k in 0..LOT {
+        narrow[k] = T::of(v[k]);
+    }
+    lanes::<T, S>(s, narrow)
+}
+
+/// What a lot of lookups found.
+#[derive(Clone, Copy)]
+pub struct Found<V> {
+    pub lit: V,
+    /// The mean of the blockers' depths, on the scale of the moments.
+    pub blocker: V,
+    /// The filtered moments, and the depth on their scale that they were asked about.
+    pub moments: [V; 4],
+    pub t: V,
+}
+
+/// The lookups at places of the map, over boxes of half sides in texels; of receivers whose bit is set.
+#[inline(always)]
+pub fn tested<T: Real, E: Stored, S: Simd, const C: usize>(
+    s: S,
+    live: u64,
     filtered: &Filtered<'_, T, E, C>,
     test: &Test<T>,
     granted: &Granted<T>,
-    foot: &Foot<T>,
-    gain: [T; 2],
-    half: [T; 2],
-) -> Found<T> {
-    let moments = filtered.mean_powers(foot.x, foot.y, half);
-    let slope = granted.slope * (gain[0] * half[0] + gain[1] * half[1]);
-    let t = filtered.warp.of(foot.depth - (foot.rounding + granted.constant + slope));
-    Found { lit: test.lit(moments, t), moments, t }
+    feet: &Feet<T::V8<S>>,
+    gain: [T::V8<S>; 2],
+    half: [T::V8<S>; 2],
+) -> Found<T::V8<S>> {
+    let moments = filtered.means(s, live, (feet.x, feet.y), half);
+    let slope = all::<T, S>(s, granted.slope) * (gain[0] * half[0] + gain[1] * half[1]);
+    let t = filtered.warp.of(feet.depth - (feet.rounding + all::<T, S>(s, granted.constant) + slope));
+    let (lit, blocker) = test.blockers(s, moments, t);
+    Found { lit, blocker, moments, t }
+}
+
+/// Of a lot of receivers from `i` on, of which those `asked` look into this map: where they fall, how much depth they
+/// gain over a texel, and a bit for each that lies on the map.
+#[inline(always)]
+pub fn placed<T: Real, S: Simd>(
+    s: S,
+    map: &Map<'_, T>,
+    perspective: bool,
+    points: &[[T; 3]],
+    normals: Option<&[[T; 3]]>,
+    i: usize,
+    asked: u64,
+    normal_offset: T,
+) -> (Feet<T::V8<S>>, [T::V8<S>; 2], u64) {
+    let (feet, gain) = if perspective {
+        let feet = map.feet::<S, true>(s, points, normals, i, normal_offset);
+        (feet, feet.gain::<true>())
+    } else {
+        let feet = map.feet::<S, false>(s, points, normals, i, normal_offset);
+        (feet, feet.gain::<false>())
+    };
+    let mut live = feet.live & asked;
+    for k in 0..LOT {
+        if !map.holds(feet.x.as_slice()[k], feet.y.as_slice()[k]) {
+            live &= !(1 << k);
+        }
+    }
+    (feet, gain, live)
 }
 
 /// The lit fraction of every receiver; with `more`, the moments (as many as `C`) and the depth asked about. `half` is
@@ -102,41 +174,30 @@ pub fn lookup<T: Real, E: Stored, const C: usize>(
     out: &mut [T],
     more: Option<(&mut [[T; C]], &mut [T])>,
 ) -> Result<(), Interrupted> {
-    parallel::for_each(watch, (receivers, normals, out, more), 1 << 13, |_, (p, n, out, mut more)| {
-        dispatch!(_s => for i in 0..out.len() {
-            let found = if perspective {
-                one::<T, E, C, true>(map, filtered, p[i], at(n, i), test, granted, half)
-            } else {
-                one::<T, E, C, false>(map, filtered, p[i], at(n, i), test, granted, half)
-            };
-            out[i] = found.lit;
-            if let Some((moments, t)) = &mut more {
-                for c in 0..C {
-                    moments[i][c] = found.moments[c];
+    parallel::for_each(watch, (receivers, normals, out, more), 1 << 13, |first, (p, n, out, mut more)| {
+        dispatch!(s => {
+            let (half, nan) = (all::<T, _>(s, half), all::<T, _>(s, T::NAN));
+            let mut i = 0;
+            while i < out.len() {
+                let asked = map.asks(first + i, LOT.min(out.len() - i));
+                let (feet, gain, live) = placed(s, map, perspective, p, n, i, asked, granted.normal_offset);
+                let found = tested(s, live, filtered, test, granted, &feet, gain, [half; 2]);
+                let here = mask::<T, _>(s, live);
+                let lit = without_bleeding(found.lit, all::<T, _>(s, granted.bleeding));
+                put::<T, _>(out, i, asked, here.select(lit, feet.answer));
+                if let Some((moments, t)) = &mut more {
+                    for c in 0..C {
+                        let m = here.select(found.moments[c], nan);
+                        for k in 0..LOT {
+                            if asked >> k & 1 == 1 {
+                                moments[i + k][c] = m.as_slice()[k];
+                            }
+                        }
+                    }
+                    put::<T, _>(t, i, asked, here.select(found.t, nan));
                 }
-                t[i] = found.t;
+                i += LOT;
             }
         })
     })
-}
-
-#[inline(always)]
-fn one<T: Real, E: Stored, const C: usize, const PERSPECTIVE: bool>(
-    map: &Map<'_, T>,
-    filtered: &Filtered<'_, T, E, C>,
-    point: [T; 3],
-    normal: Option<[T; 3]>,
-    test: &Test<T>,
-    granted: &Granted<T>,
-    half: T,
-) -> Found<T> {
-    let foot = match map.foot::<PERSPECTIVE>(point, normal, granted.normal_offset) {
-        Ok(foot) if map.holds(foot.x, foot.y) => foot,
-        Ok(_) => return Found { lit: T::one(), moments: [T::NAN; 4], t: T::NAN },
-        Err(answer) => return Found { lit: answer, moments: [T::NAN; 4], t: T::NAN },
-    };
-    let gain = foot.gain::<PERSPECTIVE>();
-    let mut found = tested(filtered, test, granted, &foot, gain, [half; 2]);
-    found.lit = without_bleeding(found.lit, granted.bleeding);
-    found
 }

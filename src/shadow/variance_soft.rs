@@ -12,19 +12,21 @@
 use crate::dispatch;
 use crate::parallel::{self, Interrupted, Watch};
 use crate::real::{Lanes, Real};
+use crate::shadow::anchor::{all, light_image, mask, put};
 use crate::shadow::filtered::Filtered;
-use crate::shadow::lookup::{Map, at, light_image};
+use crate::shadow::lookup::{LOT, Map};
 use crate::shadow::moment_map::Stored;
-use crate::shadow::tested::{Granted, Test, tested};
+use crate::shadow::tested::{Granted, Test, placed, tested};
 use crate::shadow::variance::without_bleeding;
+use crate::simd::*;
 
-/// What one receiver found: see [`crate::shadow::pcss`].
+/// What a lot of receivers found: see [`crate::shadow::pcss`].
 #[derive(Clone, Copy)]
-struct Soft<T> {
-    lit: T,
-    blocker: T,
-    penumbra: T,
-    search: T,
+struct Soft<V> {
+    lit: V,
+    blocker: V,
+    penumbra: V,
+    search: V,
 }
 
 /// Blocker depth, penumbra width, half the search region in texels.
@@ -49,58 +51,79 @@ pub fn variance_soft<T: Real, E: Stored, const C: usize>(
     out: &mut [T],
     more: Option<Intermediates<'_, T>>,
 ) -> Result<(), Interrupted> {
-    parallel::for_each(watch, (receivers, normals, out, more), 1 << 13, |_, (p, n, out, mut more)| {
-        dispatch!(_s => for i in 0..out.len() {
-            let found = if perspective {
-                one::<T, E, C, true>(map, filtered, p[i], at(n, i), test, granted, light, search_slope)
-            } else {
-                one::<T, E, C, false>(map, filtered, p[i], at(n, i), test, granted, light, search_slope)
-            };
-            out[i] = found.lit;
-            if let Some((blocker, penumbra, search)) = &mut more {
-                (blocker[i], penumbra[i], search[i]) = (found.blocker, found.penumbra, found.search);
+    let light = Light { sides: light, search_slope };
+    parallel::for_each(watch, (receivers, normals, out, more), 1 << 13, |first, (p, n, out, mut more)| {
+        dispatch!(s => {
+            let mut i = 0;
+            while i < out.len() {
+                let asked = map.asks(first + i, LOT.min(out.len() - i));
+                let found = lot(s, map, perspective, filtered, p, n, i, asked, test, granted, &light);
+                put::<T, _>(out, i, asked, found.lit);
+                if let Some((blocker, penumbra, search)) = &mut more {
+                    put::<T, _>(blocker, i, asked, found.blocker);
+                    put::<T, _>(penumbra, i, asked, found.penumbra);
+                    put::<T, _>(search, i, asked, found.search);
+                }
+                i += LOT;
             }
         })
     })
 }
 
+struct Light<T> {
+    sides: [T; 2],
+    search_slope: T,
+}
+
 #[inline(always)]
-fn one<T: Real, E: Stored, const C: usize, const PERSPECTIVE: bool>(
+fn lot<T: Real, E: Stored, S: Simd, const C: usize>(
+    s: S,
     map: &Map<'_, T>,
+    perspective: bool,
     filtered: &Filtered<'_, T, E, C>,
-    point: [T; 3],
-    normal: Option<[T; 3]>,
+    points: &[[T; 3]],
+    normals: Option<&[[T; 3]]>,
+    i: usize,
+    asked: u64,
     test: &Test<T>,
     granted: &Granted<T>,
-    light: [T; 2],
-    search_slope: T,
-) -> Soft<T> {
-    let (zero, one) = (T::zero(), T::one());
-    let foot = match map.foot::<PERSPECTIVE>(point, normal, granted.normal_offset) {
-        Ok(foot) if map.holds(foot.x, foot.y) => foot,
-        Ok(_) => return Soft { lit: one, blocker: T::NAN, penumbra: zero, search: zero },
-        Err(answer) => {
-            let nothing = if answer.is_nan() { answer } else { zero };
-            return Soft { lit: answer, blocker: T::NAN, penumbra: nothing, search: nothing };
-        }
+    light: &Light<T>,
+) -> Soft<T::V8<S>> {
+    let (zero, one, nan) = (all::<T, S>(s, T::zero()), all::<T, S>(s, T::one()), all::<T, S>(s, T::NAN));
+    let (feet, gain, live) = placed(s, map, perspective, points, normals, i, asked, granted.normal_offset);
+    let near = all::<T, S>(s, map.near);
+    let half = if perspective {
+        light_image::<T, S, true>(s, map, feet.depth, light.sides, near)
+    } else {
+        light_image::<T, S, false>(s, map, feet.depth, light.sides, near)
     };
-    let gain = foot.gain::<PERSPECTIVE>();
-    let limit = map.extent() + map.extent();
-    let half = light_image::<T, PERSPECTIVE>(map, foot.depth, light, map.near);
-    let half = [Lanes::min(half[0], limit), Lanes::min(half[1], limit)];
-    let search = Lanes::max(half[0], half[1]);
+    let here = mask::<T, S>(s, live);
+    let nothing = feet.answer.simd_eq(feet.answer).select(zero, nan);
+    let search = here.select(Lanes::max(half[0], half[1]), nothing);
 
-    let searched = Granted { slope: search_slope, ..*granted };
-    let first = tested(filtered, test, &searched, &foot, gain, half);
-    if first.lit > T::of(1.0 - NONE) {
-        return Soft { lit: one, blocker: T::NAN, penumbra: zero, search };
+    let searched = Granted { slope: light.search_slope, ..*granted };
+    let first = tested(s, live, filtered, test, &searched, &feet, gain, half);
+    // NaN goes on.
+    let lit = first.lit.simd_gt(all::<T, S>(s, T::of(1.0 - NONE)));
+    let live = live & !lit.to_bitmask();
+    if live == 0 {
+        return Soft { lit: here.select(one, feet.answer), blocker: nan, penumbra: nothing, search };
     }
-    let (_, z) = test.blockers(first.moments, first.t);
-    let blocker = Lanes::min(Lanes::max(filtered.warp.back(z), map.near), foot.depth);
-    let ratio = if PERSPECTIVE { (foot.depth - blocker) / blocker } else { foot.depth - blocker };
-    let penumbra = Lanes::max(ratio, zero) * Lanes::max(light[0], light[1]);
-
-    let half = light_image::<T, PERSPECTIVE>(map, foot.depth, light, blocker);
-    let second = tested(filtered, test, granted, &foot, gain, half);
-    Soft { lit: without_bleeding(second.lit, granted.bleeding), blocker, penumbra, search }
+    let blocker = Lanes::min(Lanes::max(filtered.warp.back(first.blocker), near), feet.depth);
+    let ratio = if perspective { (feet.depth - blocker) / blocker } else { feet.depth - blocker };
+    let penumbra = Lanes::max(ratio, zero) * all::<T, S>(s, light.sides[0].max(light.sides[1]));
+    let half = if perspective {
+        light_image::<T, S, true>(s, map, feet.depth, light.sides, blocker)
+    } else {
+        light_image::<T, S, false>(s, map, feet.depth, light.sides, blocker)
+    };
+    let second = tested(s, live, filtered, test, granted, &feet, gain, half);
+    let shaded = mask::<T, S>(s, live);
+    let second = without_bleeding(second.lit, all::<T, S>(s, granted.bleeding));
+    Soft {
+        lit: shaded.select(second, here.select(one, feet.answer)),
+        blocker: shaded.select(blocker, nan),
+        penumbra: shaded.select(penumbra, nothing),
+        search,
+    }
 }

@@ -42,7 +42,7 @@ fn level<T: Real, const PERSPECTIVE: bool>(
     count: usize,
 ) -> u8 {
     // Without a place on the map any level answers.
-    let Ok(foot) = map.foot::<PERSPECTIVE>(point, None, T::zero()) else { return 0 };
+    let Some(foot) = map.foot::<PERSPECTIVE>(point) else { return 0 };
     let mut squared = 0.0;
     for k in 0..3 {
         let d = point[k].to_f64() - pixels.eye[k];
@@ -74,7 +74,7 @@ pub fn mark<T: Real, const PERSPECTIVE: bool>(
             if map.skips(first + i) {
                 continue;
             }
-            let Ok(foot) = map.foot::<PERSPECTIVE>(points[i], None, T::zero()) else { continue };
+            let Some(foot) = map.foot::<PERSPECTIVE>(points[i]) else { continue };
             let (Some([x0, x1]), Some([y0, y1])) =
                 (pages(foot.x, border, map.size()[0], bits), pages(foot.y, border, map.size()[1], bits))
             else {
@@ -93,8 +93,8 @@ pub fn mark<T: Real, const PERSPECTIVE: bool>(
 /// The first and last page of those that hold a place and what lies `border` about it; `None` off the map.
 #[inline(always)]
 fn pages<T: Real>(x: T, border: T, size: usize, bits: u32) -> Option<[usize; 2]> {
-    let (low, high, last) = ((x - border).to_f64(), (x + border).to_f64(), (size - 1) as f64);
-    if !(high >= 0.0 && low <= last) {
+    let (low, high) = ((x - border).to_f64(), (x + border).to_f64());
+    if !(high >= 0.0 && low < size as f64) {
         return None;
     }
     let page = |x: f64| (if x < 0.0 { 0.0 } else { x } as usize).min(size - 1) >> bits;
@@ -114,7 +114,7 @@ pub fn settle<T: Real, const PERSPECTIVE: bool>(
             if map.skips(first + i) {
                 continue;
             }
-            if let Ok(foot) = map.foot::<PERSPECTIVE>(points[i], None, T::zero())
+            if let Some(foot) = map.foot::<PERSPECTIVE>(points[i])
                 && map.holds(foot.x, foot.y)
                 && !map.resident(foot.x, foot.y)
             {

@@ -1,6 +1,6 @@
 """Shadow lookups at 1280 x 720 with a map of 2048², beside the same filters in GLSL on Mesa llvmpipe (moderngl, EGL).
 
-`LP_NUM_THREADS=2 python tests/benchmarks/shadow.py [threads]`; medians of wall and of processor time, all threads' together
+`LP_NUM_THREADS=2 python tests/benchmarks/shadow.py [threads]`: medians of wall and of processor time
 
 Both look up the same receivers in the same map with the same points, turned by a hash of the pixel; ours also follows
 the receiver's plane. Receivers and map are resident in both; the lit fractions arrive in an array. Rounds alternate.
@@ -131,7 +131,7 @@ def main(rounds=9):
             list_.append((perf_counter() - start, process_time() - worked))
     reads = {"hard": 1, "pcf 16": 16, "pcf 64": 64, "pcss 16+32": 48}
     print(
-        f"{'':12} {'ours ms':>9} {'cpu':>7} {'ns/read':>8} {'llvmpipe':>9} {'cpu':>7} {'ratio':>6} {'cpu':>5}   mean lit"
+        f"{'':12} {'ours ms':>9} {'cpu':>7} {'ns/read':>8} {'llvmpipe':>9} {'cpu':>7} {'ratio':>6} {'cpu':>5}  mean lit"
     )
     for name in ours:
         wall, cpu = (statistics.median(t) * 1e3 for t in zip(*times["ours", name][2:], strict=True))

@@ -53,3 +53,8 @@ def test_a_constant_bias_opens_the_gap_that_triangles_say(scenes):
         expected = x[np.argmax(height <= (x - 0.5) * 4.0 / (x + 2.0))] - 0.5
         assert sl.shadow.detached_gap(lit, exact, line) == pytest.approx(expected, abs=3 * m.texel_size(5.0))
     assert sl.shadow.detached_gap(sl.shadow.hard(m, line, UP), exact, line) <= 2 * m.texel_size(5.0)
+
+
+def test_lines_without_points_have_no_gap():
+    gap = sl.shadow.detached_gap(np.zeros((3, 0)), np.zeros((3, 0)), np.zeros((3, 0, 3)))
+    assert gap.shape == (3,) and not gap.any()

@@ -136,3 +136,11 @@ def test_errors_name_the_argument(scenes):
     for name, error, args, kwargs in wrong:
         with pytest.raises(error, match=name):
             SHADOW.variance(*args, **kwargs)
+
+
+@pytest.mark.parametrize("dtype", [np.float32, np.float64])
+def test_without_variance_nothing_lies_beyond_the_mean(dtype):
+    tiny = np.finfo(dtype).smallest_subnormal
+    for t in (tiny, np.finfo(dtype).tiny, dtype(1e-30)):
+        assert sl.shadow.chebyshev_bound(dtype(0), dtype(0), dtype(t)) == 0
+    assert sl.shadow.chebyshev_bound(dtype(0), dtype(0), dtype(0)) == 1

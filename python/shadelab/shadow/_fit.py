@@ -29,6 +29,15 @@ def _unit(name: str, v: NDArray[np.float64]) -> NDArray[np.float64]:
     return np.asarray(v / length)
 
 
+def _centroid(corners: Any) -> NDArray[np.float64]:
+    """The middle of a flat polygon's area."""
+    points = np.asarray(corners, np.float64)
+    sides = points - points[0]
+    crosses = np.cross(sides[1:-1], sides[2:])
+    shares = crosses @ crosses.sum(0)
+    return np.asarray(points[0] + shares @ (sides[1:-1] + sides[2:]) / (3.0 * shares.sum()))
+
+
 def _frame_along(axis: NDArray[np.float64]) -> NDArray[np.float64]:
     """Right, up, axis, with the world's y up unless the axis is close to it."""
     world_up = np.array([0.0, 1.0, 0.0]) if abs(axis[1]) < 0.99 else np.array([0.0, 0.0, 1.0])
@@ -47,7 +56,7 @@ def _light_frame(
         # Edges need not be square to each other: what counts is the extent along the map's sides.
         return True, np.asarray(light.center, np.float64), frame, (float(np.linalg.norm(u)), float(abs(v @ frame[1])))
     if isinstance(light, DiskLight | PolygonLight):
-        center = light.center if isinstance(light, DiskLight) else np.mean(light.corners, 0)
+        center = light.center if isinstance(light, DiskLight) else _centroid(light.corners)
         side = math.sqrt(light.area)
         frame = _frame_along(_unit("light", np.asarray(light.normal, np.float64)))
         return True, np.asarray(center, np.float64), frame, (side, side)

@@ -230,6 +230,9 @@ def cascades(
     maps = []
     for i in range(len(splits) - 1):
         n, f = splits[i], splits[i + 1]
+        if i > 0:
+            # Receivers that cross over from the part before look into this map too.
+            n -= share * (n - splits[i - 1])
         if steady:
             k2 = up * up * (1.0 + wide * wide)
             middle = min(f, (n + f) * (1.0 + k2) / 2.0)

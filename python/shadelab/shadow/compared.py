@@ -106,7 +106,7 @@ def hard(
     Raises
     ------
     TypeError, ValueError
-        If an argument has the wrong type or shape, or a bias is negative.
+        If an argument has the wrong type or shape, or a bias but `bias` is negative.
 
     Notes
     -----
@@ -261,15 +261,25 @@ def pcf(
     smooth = _arrays.flag("bilinear", bilinear)
     wanted = _arrays.flag("full_output", full_output)
     texels = _arrays.choice("units", units, ("texels", "world")) == "texels"
-    if isinstance(maps, MapSet):
-        if texels:
-            maps._wide(half)
-        elif maps.projection == "orthographic":
-            maps._wide(max(half / m.texel_size() for m in maps.maps))
+    # Texels beyond the filter that a receiver's own move and the texels between taps reach.
+    beyond = granted[2] + (0.5 if smooth else 0.0)
+    if isinstance(maps, MapSet) and texels:
+        maps._wide(half + beyond)
     shape, points, n = _receivers(maps, receivers, normals)
     result, flat = _result(out, shape, points.dtype)
 
-    def look(_: Any, chart: tuple[Any, ...], granted: Any, to: Any) -> None:
+    def look(m: Any, chart: tuple[Any, ...], granted: Any, to: Any) -> None:
+        if isinstance(maps, MapSet) and not texels:
+            maps._wide(half / m.texel_size(_least_depth(m, points, chart[5])) + beyond)
         _kernels.pcf(chart, points, n, taps, (half, texels, smooth), granted, to[0])
 
     return _compared(result, _looked_up(maps, points, n, granted, [flat], [1.0], look), wanted)
+
+
+def _least_depth(m: Any, points: Floats, chosen: tuple[NDArray[np.uint8], int]) -> float:
+    """The least depth of receivers before the light, of those that look into a map; 1 in parallel maps."""
+    if m.projection != "perspective":
+        return 1.0
+    which, own = chosen
+    depth = (points[which == own] - m.position) @ m.axis
+    return float(depth.min(where=depth > 0.0, initial=np.inf))

@@ -127,7 +127,8 @@ def cube_shadow_map(
     else:
         near, far, reach = 1.0, 1.0, 0.0
     # The face ends at 1, its border so many texels farther.
-    half = min(max(1.0 / (1.0 - 2.0 * margin / side), 1.0 + reach), _MAX_TANGENT)
+    # Receivers where two faces meet may fall on either by rounding: a quarter of a texel more.
+    half = min(max(1.0 / (1.0 - 2.0 * max(margin, 0.25) / side), 1.0 + reach), _MAX_TANGENT)
     window = _rounded(np.array([-half, half, -half, half]), points.dtype)
     maps = []
     for k in range(6):

@@ -15,6 +15,7 @@ from .._arrays import Floats
 from .._kernels import shadow as _kernels
 from ..accel import BVH
 from ..light import DirectionalLight, DiskLight, PointLight, PolygonLight, RectLight, SphereLight, SpotLight
+from ._fit import _centroid
 from ._lookup import _points, _result
 from .maps import Light, _unit
 
@@ -369,7 +370,7 @@ def distance_field(
     profile = "outer" if outer else "box" if isinstance(light, RectLight) else "disk"
     most = _arrays.count("max_steps", max_steps, 1, 4096)
     share = _arrays.number("step", step, high=1.0, above=0.0)
-    gap = None if offset is None else _arrays.number("offset", offset, 0.0, 1e15)
+    gap = None if offset is None else _arrays.number("offset", offset, high=1e15, above=0.0)
     if isinstance(field, DistanceGrid):
         shape, points, n = _points(field.distances.dtype, receivers, normals)
         result, flat = _result(out, shape, points.dtype)
@@ -412,7 +413,7 @@ def _target(
         elif isinstance(light, DiskLight | SphereLight):
             place, half = light.center, light.radius
         elif isinstance(light, PolygonLight):
-            place, half = np.mean(light.corners, 0), math.sqrt(light.area / math.pi)
+            place, half = _centroid(light.corners), math.sqrt(light.area / math.pi)
         else:
             place = light.position
         towards = (True, [float(x) for x in place])

@@ -87,9 +87,7 @@ def _lookup(
     wanted = _arrays.flag("full_output", full_output)
     more = [np.empty((len(flat), m.channels), flat.dtype), np.empty_like(flat)] if wanted else None
     _kernels.filtered(
-        shadow_map.depth,
-        shadow_map._geometry(),
-        shadow_map.projection == "perspective",
+        shadow_map._chart(),
         (m.moments, m._levels(), m.filter == "summed_area", m.reduce, m._range()),
         points,
         n,

@@ -137,7 +137,7 @@ def variance_soft(
     if m.kind == "exponential_variance":
         raise ValueError("moment_map: expected kind 'variance' or 'moment', got 'exponential_variance'")
     shadow_map = m.shadow_map
-    sides, perspective = _light_sides(shadow_map, light_size), shadow_map.projection == "perspective"
+    sides = _light_sides(shadow_map, light_size)
     asked = _asked(m, min_variance, method, moment_bias)
     searched = _arrays.number("search_slope_bias", search_slope_bias, 0.0)
     granted = _bias(m, bias, slope_bias, normal_offset, light_bleeding)
@@ -146,6 +146,6 @@ def variance_soft(
     wanted = _arrays.flag("full_output", full_output)
     more = [np.empty_like(flat) for _ in range(3)] if wanted else None
     store = (m.moments, m._levels(), m.filter == "summed_area", m.reduce, m._range())
-    geometry, width = shadow_map._geometry(), (*sides, searched)
-    _kernels.filtered(shadow_map.depth, geometry, perspective, store, points, n, asked, granted, width, flat, more)
+    width = (*sides, searched)
+    _kernels.filtered(shadow_map._chart(), store, points, n, asked, granted, width, flat, more)
     return result if more is None else PCSS(result, *(a.reshape(shape) for a in more))

@@ -153,6 +153,8 @@ def detached_gap(
         raise ValueError(f"receivers: expected shape {(*mine.shape, 3)} of lines, got {points.shape}")
     slack = _tolerance(tolerance)
     n = mine.shape[-1]
+    if n == 0:
+        return np.zeros(mine.shape[:-1])
     steps = np.linalg.norm(np.diff(points, axis=-2), axis=-1)
     along = np.concatenate([np.zeros((*mine.shape[:-1], 1)), np.cumsum(steps, -1)], -1)
     places = np.arange(n)

@@ -125,7 +125,8 @@ def moment_map(
         lost by it but cost.
     exponents : (float, float) or float, optional
         Of "exponential_variance": e^(az) and -e^(-bz), or the first alone; (40, 5) by default. At most 42 in single
-        precision.
+        precision. In a table of n texels the default is ln(2^p / n) / 4 at most, with p the bits of its sums, 53 or 24:
+        beyond, differences of sums lose what is small in them, and planes that are lit before others turn black.
     bits : {None, 16}
         16 stores four powers in 16 bits each, by the transform of Peters et al. (2017).
     precision : {"double", "compensated", "single"}, optional
@@ -184,11 +185,15 @@ def moment_map(
     depth, dtype = shadow_map.depth, shadow_map.depth.dtype
     square = _arrays.count("reduce", reduce, 1, max(depth.shape))
     wide = 2.0 if sigma is None else _arrays.number("sigma", sigma, 0.0)
-    own = (
-        _exponents((40.0, 5.0) if exponents is None else exponents, dtype)
-        if kind == "exponential_variance"
-        else (0.0, 0.0)
-    )
+    most = _MOST[dtype]
+    usual = most
+    if filter == "summed_area":
+        digits = 53 if sums == "double" else 24
+        texels = math.prod(-(-n // square) for n in depth.shape)
+        usual = min(most, max((digits * math.log(2.0) - math.log(texels)) / 4.0, 0.25))
+    own = (0.0, 0.0)
+    if kind == "exponential_variance":
+        own = _exponents((min(40.0, usual), min(5.0, usual)) if exponents is None else exponents, most)
     if bits is not None:
         _whole(bits, kind, filter)
     near, far = _depths(shadow_map, receivers)
@@ -214,11 +219,10 @@ def moment_map(
     return MomentMap(shadow_map, kind, filter, moments, near, far, square, reach, own)
 
 
-def _exponents(value: Any, dtype: np.dtype[Any]) -> tuple[float, float]:
+def _exponents(value: Any, most: float) -> tuple[float, float]:
     pair = (value,) if np.ndim(value) == 0 else tuple(value)
     if len(pair) not in (1, 2):
         raise ValueError(f"exponents: expected a number or a pair, got {value!r}")
-    most = _MOST[dtype]
     first, *second = (_arrays.number("exponents", e, high=most, above=0.0) for e in pair)
     return first, second[0] if second else 0.0
 

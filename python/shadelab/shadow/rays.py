@@ -125,9 +125,11 @@ def ray_traced(
     _arrays.choice("sampler", sampler, get_args(Sampler))
     shifts = None
     if offsets is not None:
-        given = _arrays.vectors("offsets", offsets, 2, bvh.dtype)
-        if not np.isfinite(given).all():
+        wide = _arrays.vectors("offsets", offsets, 2, np.float64)
+        if not np.isfinite(wide).all():
             raise ValueError("offsets: expected finite numbers")
+        # In double, before a sample is added: large ones would leave no digits to it.
+        given = (wide - np.floor(wide)).astype(bvh.dtype)
         try:
             shifts = np.ascontiguousarray(np.broadcast_to(given, (*shape, 2))).reshape(-1, 2)
         except ValueError:

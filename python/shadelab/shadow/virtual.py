@@ -36,6 +36,14 @@ class _Level:
         return self.whole.granted
 
     @property
+    def position(self) -> NDArray[np.float64]:
+        return self.whole.position
+
+    @property
+    def axis(self) -> NDArray[np.float64]:
+        return self.whole.axis
+
+    @property
     def dtype(self) -> np.dtype[Any]:
         return self.whole.dtype
 

@@ -9,7 +9,7 @@ use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
 
 /// Origin (3), rows right, up, axis (9), window (4) and near (1) of a map.
-pub type Geometry = [f64; 17];
+type Geometry = [f64; 17];
 
 /// Depths; geometry; whether perspective; low, step and nothing of stored integers; table of pages, its page's side as a
 /// power of two, width and height of the whole; which map each receiver looks into, and which one this is.
@@ -102,9 +102,4 @@ fn placed<'a, T: Real>(texels: Texels<'a, T>, size: [usize; 2], g: &Geometry) ->
     let frame = [three(3), three(6), three(9)];
     Map::new(texels, size, three(0), frame, [at(12), at(13), at(14), at(15)], at(16))
         .ok_or_else(|| PyValueError::new_err("window: expected left < right and bottom < top"))
-}
-
-/// A map of plain depths.
-pub fn map<'a, T: Real + Element>(depth: &'a In<'_, T>, g: &Geometry) -> PyResult<Map<'a, T>> {
-    placed(Texels::Real(depth.slice()?), size(depth.shape())?, g)
 }

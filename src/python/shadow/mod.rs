@@ -16,7 +16,7 @@ use crate::shadow::pattern::{Kind, Pattern};
 use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
 
-pub use chart::{Chart, Geometry, map};
+pub use chart::Chart;
 /// Constant, slope, normal offset, plane.
 pub type Granted = (f64, f64, f64, bool);
 /// Kind, samples, seed.

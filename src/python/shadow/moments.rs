@@ -1,6 +1,6 @@
 //! Bindings of `shadow`: maps of moments, the bounds, and lookups by them.
 
-use super::{Geometry, map};
+use super::Chart;
 use crate::elementwise;
 use crate::python::array::{Arrays, In, Out, run, unknown};
 use crate::real;
@@ -147,9 +147,7 @@ type More<'py> = Option<Vec<Bound<'py, PyAny>>>;
 #[pyfunction]
 pub fn filtered<'py>(
     py: Python<'py>,
-    depth: &Bound<'py, PyAny>,
-    geometry: Geometry,
-    perspective: bool,
+    chart: Chart<'py>,
     store: Store<'py>,
     receivers: &Bound<'py, PyAny>,
     normals: Option<&Bound<'py, PyAny>>,
@@ -161,8 +159,8 @@ pub fn filtered<'py>(
 ) -> PyResult<()> {
     let four = matches!(asked.0, ("moment", _)) || asked.0.1[1] > 0.0;
     let stored = store.0.getattr("dtype")?.getattr("name")?.extract::<String>()?;
-    real!(depth, T => {
-        let call = Call { depth, geometry, perspective, receivers, normals, asked, bias, width, out, more };
+    real!(receivers, T => {
+        let call = Call { chart, receivers, normals, asked, bias, width, out, more };
         match (stored.as_str(), four) {
             ("float32", false) => call.run::<T, f32, 2>(py, store),
             ("float32", true) => call.run::<T, f32, 4>(py, store),
@@ -175,9 +173,7 @@ pub fn filtered<'py>(
 }
 
 struct Call<'a, 'py> {
-    depth: &'a Bound<'py, PyAny>,
-    geometry: Geometry,
-    perspective: bool,
+    chart: Chart<'py>,
     receivers: &'a Bound<'py, PyAny>,
     normals: Option<&'a Bound<'py, PyAny>>,
     asked: Asked<'a>,
@@ -193,14 +189,14 @@ impl<'py> Call<'_, 'py> {
         py: Python<'py>,
         (values, levels, table, reduce, range): Store<'py>,
     ) -> PyResult<()> {
-        let (depth, points) = (In::<T>::of("depth", self.depth)?, In::<T>::of("receivers", self.receivers)?);
+        let (held, points) = (self.chart.held::<T>()?, In::<T>::of("receivers", self.receivers)?);
         let normals = self.normals.map(|n| In::<T>::of("normals", n)).transpose()?;
         let values = In::<E>::of("moments", &values)?;
         let levels =
             levels.into_iter().map(|(first, width, height)| Level { first, width, height }).collect();
         let filtered = Filtered::<T, E, C>::new(values.items()?, levels, table, reduce, warp(range))
             .ok_or_else(|| PyValueError::new_err("moments: sizes do not fit"))?;
-        let (map, test, granted) = (map(&depth, &self.geometry)?, test::<T>(self.asked)?, granted(self.bias));
+        let (map, test, granted) = (held.map()?, test::<T>(self.asked)?, granted(self.bias));
         let mut out = Out::<T>::of("out", self.out)?;
         let (p, n) = (points.items()?, normals.as_ref().map(In::items).transpose()?);
         let out = out.slice()?;
@@ -208,7 +204,7 @@ impl<'py> Call<'_, 'py> {
         for array in self.more.iter().flatten() {
             more.push(Out::<T>::of("more", array)?);
         }
-        let perspective = self.perspective;
+        let perspective = self.chart.2;
         match self.width {
             Width::Half(half) => {
                 let more = match &mut more[..] {
