@@ -64,7 +64,7 @@ pub fn leaf<const ANY: bool, T: Real, S: Simd>(
     false
 }
 
-/// Tests the triangles of a leaf, and appends every hit.
+/// Tests the triangles of a leaf, and hands on every hit.
 #[inline(always)]
 pub fn all<T: Real, S: Simd>(
     s: S,
@@ -72,7 +72,7 @@ pub fn all<T: Real, S: Simd>(
     ray: &Ready<T>,
     heading: Heading,
     ignore: i32,
-    found: &mut Vec<Hit<T>>,
+    mut each: impl FnMut(Hit<T>),
 ) {
     for block in blocks {
         let Some(Hits { mut bits, t, u, v }) = test(s, block, ray, heading, ray.t_max) else { continue };
@@ -81,7 +81,7 @@ pub fn all<T: Real, S: Simd>(
             bits &= bits - 1;
             let face = block.faces[l];
             if face != ignore && t[l] < ray.t_max {
-                found.push(Hit { t: t[l], u: u[l], v: v[l], face });
+                each(Hit { t: t[l], u: u[l], v: v[l], face });
             }
         }
     }

@@ -40,21 +40,36 @@ pub fn lists<X: Send>(
     long: bool,
     list: impl Fn(usize, &mut Vec<X>, &AtomicBool) -> Result<(), OutOfMemory> + Sync,
 ) -> Result<Result<Lists<X>, OutOfMemory>, Interrupted> {
+    batches(watch, count, piece, long, |first, numbers, found, stop| {
+        for (i, number) in numbers.iter_mut().enumerate() {
+            let before = found.len();
+            list(first + i, found, stop)?;
+            *number = (found.len() - before) as i64;
+        }
+        Ok(())
+    })
+}
+
+/// Asks `count` queries, `piece` of them a task. `list` appends the answers of those from a first one on, one query after
+/// the other, and says how many each has; the rest is as of [`lists`].
+pub fn batches<X: Send>(
+    watch: &mut dyn Watch,
+    count: usize,
+    piece: usize,
+    long: bool,
+    list: impl Fn(usize, &mut [i64], &mut Vec<X>, &AtomicBool) -> Result<(), OutOfMemory> + Sync,
+) -> Result<Result<Lists<X>, OutOfMemory>, Interrupted> {
     // The number of each query's answers, in the place of its end.
     let Ok(mut offsets) = zeros::<i64>(count + 1) else { return Ok(Err(OutOfMemory)) };
     let parts: Vec<Mutex<Vec<X>>> = (0..count.div_ceil(piece)).map(|_| Mutex::default()).collect();
     let full = AtomicBool::new(false);
     parallel::for_each_stoppable(watch, &mut offsets[1..], piece, long, |first, ends: &mut [i64], stop| {
         let mut found = Vec::new();
-        for (i, end) in ends.iter_mut().enumerate() {
-            if full.load(Ordering::Relaxed) {
-                return;
-            }
-            let before = found.len();
-            if list(first + i, &mut found, stop).is_err() {
-                full.store(true, Ordering::Relaxed);
-            }
-            *end = (found.len() - before) as i64;
+        if full.load(Ordering::Relaxed) {
+            return;
+        }
+        if list(first, ends, &mut found, stop).is_err() {
+            full.store(true, Ordering::Relaxed);
         }
         *parts[first / piece].lock().unwrap_or_else(PoisonError::into_inner) = found;
     })?;

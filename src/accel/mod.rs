@@ -15,6 +15,7 @@ mod cells;
 mod halving;
 #[cfg_attr(not(feature = "python"), allow(dead_code))] // as those of `query`
 pub(crate) mod lists;
+mod met;
 #[cfg_attr(not(feature = "python"), allow(dead_code))] // points come from Python alone
 pub(crate) mod pseudonormals;
 mod ray;

@@ -1,13 +1,15 @@
 //! Arrays of rays in, arrays of hits out: cut into pieces for the threads.
 
-use super::lists::{Lists, OutOfMemory, lists, zeros};
+use super::lists::{Lists, OutOfMemory, batches, zeros};
+use super::met::Met;
 use super::squares::{Hits, Stretch, stretches, task};
-use super::structure::{Counted, Ordered, Stats, Structure, Uncounted};
+use super::structure::{Counted, Ordered, Stats, Structure};
 use super::{Hit, Ray};
 use crate::dispatch;
 use crate::parallel::{self, Interrupted, Pieces, Watch};
 use crate::real::Real;
 use crate::vec::Vec3;
+use std::sync::atomic::Ordering;
 
 /// Rays in arrays; intervals and ignored faces are one for all, or one a ray.
 #[derive(Clone, Copy)]
@@ -21,7 +23,7 @@ pub struct Rays<'a, T> {
     pub width: usize,
 }
 
-/// Rays a task, where every hit is asked for.
+/// Rays after which a search for every hit can be stopped.
 pub const ALL_HITS: usize = 64;
 
 impl<T: Real> Rays<'_, T> {
@@ -170,13 +172,22 @@ impl<T: Real, A: Structure<T>> Queries<T> for A {
         count: usize,
     ) -> Result<Result<AllHits<T>, OutOfMemory>, Interrupted> {
         // Few a task, since a ray may have as many hits as there are faces.
-        let all = lists(
-            watch,
-            count,
-            ALL_HITS,
-            false,
-            |i, found, _| dispatch!(s => Structure::all_hits(self, s, &rays.get(i), &mut Uncounted, found)),
-        )?;
+        let piece = task(4 * ALL_HITS, rays.width);
+        let all = batches(watch, count, piece, true, |first, numbers, found, stop| {
+            let mut met = Met::new();
+            for (start, count, order) in stretches(rays.width, numbers.len()) {
+                let from = Stretch { rays, start: first + start, order };
+                for few in (0..count).step_by(ALL_HITS) {
+                    if stop.load(Ordering::Relaxed) {
+                        return Ok(());
+                    }
+                    let range = (few, ALL_HITS.min(count - few));
+                    dispatch!(s => self.every_batch(s, range, from, &mut met))?;
+                }
+                met.bring(|i| order.place(i), &mut numbers[start..start + count], found)?;
+            }
+            Ok(())
+        })?;
         all.map_or_else(|full| Ok(Err(full)), |all| gather(watch, all))
     }
 

@@ -7,6 +7,7 @@
 use super::batch::{Sink, Source};
 use super::block::{self, BLOCK, Block};
 use super::lists::OutOfMemory;
+use super::met::{Met, settle};
 use super::ray::{Heading, Ready, ready};
 use super::{Hit, Ray};
 use crate::real::Real;
@@ -180,6 +181,27 @@ pub trait Structure<T: Real>: Send + Sync {
             answer.put(i, if hit { Hit { face: 0, ..Hit::miss() } } else { Hit::miss() });
         }
     }
+
+    /// Adds every hit of `count` rays from `first` on to `met`, in whatever order.
+    #[inline(always)]
+    fn every_batch<S: Simd>(
+        &self,
+        s: S,
+        (first, count): (usize, usize),
+        rays: impl Source<T>,
+        met: &mut Met<T>,
+    ) -> Result<(), OutOfMemory> {
+        let mut found = Vec::new();
+        for i in first..first + count {
+            self.all_hits(s, &rays.ray(i), &mut Uncounted, &mut found)?;
+            met.reserve(found.len())?;
+            for &hit in &found {
+                met.put(i as u32, hit);
+            }
+            found.clear();
+        }
+        Ok(())
+    }
 }
 
 /// Keeps the nearest hit; with `ANY`, stops at the first.
@@ -248,30 +270,9 @@ fn every<T: Real, S: Simd, C: Counter, A: Structure<T> + ?Sized>(
     if visit.full {
         return Err(OutOfMemory);
     }
-    settle(&made, found, first);
+    let kept = settle(&mut found[first..]);
+    found.truncate(first + kept);
     Ok(())
-}
-
-/// Orders a ray's hits, the entries from `first` on, by `t` and face, drops repetitions, and gives them the user's `t`.
-pub fn settle<T: Real>(ray: &Ready<T>, found: &mut Vec<Hit<T>>, first: usize) {
-    let list = &mut found[first..];
-    // No `t` is NaN, and no zero negative: `max` took the entry.
-    list.sort_unstable_by(|a, b| {
-        a.t.partial_cmp(&b.t).unwrap_or(std::cmp::Ordering::Equal).then(a.face.cmp(&b.face))
-    });
-    // A triangle in several cells is hit at the same `t` in each.
-    let mut kept = first;
-    for i in first..found.len() {
-        let hit = found[i];
-        if kept == first || found[kept - 1].face != hit.face || found[kept - 1].t != hit.t {
-            found[kept] = hit;
-            kept += 1;
-        }
-    }
-    found.truncate(kept);
-    for hit in &mut found[first..] {
-        *hit = ray.finish(*hit);
-    }
 }
 
 impl<T: Real, C: Counter> Visit<T> for Every<'_, T, C> {
@@ -290,7 +291,15 @@ impl<T: Real, C: Counter> Visit<T> for Every<'_, T, C> {
             self.full = true;
             return true;
         }
-        block::all::<T, S>(s, blocks, self.ray, self.heading, self.ignore, self.found);
+        block::all::<T, S>(
+            s,
+            blocks,
+            self.ray,
+            self.heading,
+            self.ignore,
+            #[inline(always)]
+            |hit| self.found.push(self.ray.finish(hit)),
+        );
         false
     }
 }

@@ -47,6 +47,34 @@ def test_tree_equals_brute_force_to_the_bit(dtype, kind, level, method):
 
 
 @pytest.mark.parametrize("dtype", [np.float32, np.float64])
+@pytest.mark.parametrize("kind", ["random", "axis-parallel", "coherent", "picture"])
+@pytest.mark.parametrize("faces", [700, 30_000])  # of which the larger does not fit into the caches
+def test_every_hit_is_brute_forces_whatever_rays_are_traced_with_it(dtype, kind, faces):
+    rng = np.random.default_rng(5)
+    # Leaves room for many hits a ray, and for equal ones: each tenth face is there twice.
+    p, f = soup(rng, faces, dtype, size=0.3 if faces < 1000 else 0.1)
+    f = np.concatenate([f, f[::10]])
+    o, d = rays_of("coherent" if kind == "picture" else kind, rng, 2048)
+    if kind == "picture":  # 37 wide: packets, and columns that are left over
+        o, d = (np.broadcast_to(a, d.shape).reshape(32, -1, 3)[:, :37].copy() for a in (o, d))
+        o[3, 5] = np.nan
+        assert d.shape == (32, 37, 3)
+    bvh = sl.accel.BVH(p, f)
+    first = bvh.closest_hit(o, d)
+    ends = rng.uniform(1, 8, o.shape[:-1]).astype(dtype)
+    for limits in [{}, {"ignore_face": first.face}, {"t_min": 0.5, "t_max": ends}]:
+        expected = sl.accel.brute_force_all(p, f, o, d, **limits)
+        assert len(expected.t) > o[..., 0].size / 4
+        found = bvh.all_hits(o, d, **limits)
+        assert all(a.tobytes() == b.tobytes() for a, b in zip(found, expected, strict=True))
+        for level in sl.simd_levels():
+            with sl.simd(level):
+                assert all(
+                    a.tobytes() == b.tobytes() for a, b in zip(bvh.all_hits(o, d, **limits), expected, strict=True)
+                )
+
+
+@pytest.mark.parametrize("dtype", [np.float32, np.float64])
 def test_intervals_are_open_and_ignored_faces_are_not_met(dtype):
     rng = np.random.default_rng(4)
     p, f = soup(rng, 500, dtype)

@@ -1,5 +1,7 @@
 """Every hit of each ray, beside Open3D's `list_intersections`: `python tests/benchmarks/all_hits.py [rays]`.
 
+Rays of a picture, (H, W, 3), and random ones that aim at the mesh from all around.
+
 One run, 2 threads, arrays in to arrays out, medians of interleaved repetitions; on a noisy machine only ratios count.
 """
 
@@ -25,38 +27,55 @@ def scenes():
     yield "20 shells 102k", trimesh.util.concatenate(balls)
 
 
+def picture(rays):
+    """The rays of a square picture that the meshes fill."""
+    n = int(np.sqrt(rays))
+    x, y = np.meshgrid(np.linspace(-1, 1, n, dtype=np.float32), np.linspace(1, -1, n, dtype=np.float32))
+    d = np.stack([x, y, np.full_like(x, -1.8)], -1)
+    o = np.broadcast_to(np.float32([0.3, 0.2, 2.2]), d.shape).copy()
+    return o, d
+
+
+def around(rays):
+    """Random rays from a sphere around the meshes to places within."""
+    rng = np.random.default_rng(1)
+    o = rng.normal(size=(rays, 3))
+    o = (2 * o / np.linalg.norm(o, axis=-1, keepdims=True)).astype(np.float32)
+    return o, (rng.uniform(-0.8, 0.8, (rays, 3)) - o).astype(np.float32)
+
+
 def main(rays):
     sl.set_threads(2)
-    rng = np.random.default_rng(1)
     print(
-        f"{'scene':22} {'hits/ray':>8} {'ours ms':>9} {'float64':>9} {'Open3D ms':>10} {'ratio':>6} {'same count':>11}"
+        f"{'scene':22} {'rays':8} {'hits/ray':>8} {'ours ms':>9} {'float64':>9} {'Open3D ms':>10} {'ratio':>6} "
+        f"{'same count':>11}"
     )
     for name, mesh in scenes():
         p, f = np.asarray(mesh.vertices, np.float32), np.asarray(mesh.faces, np.int32)
-        o = rng.normal(size=(rays, 3))
-        o = (2 * o / np.linalg.norm(o, axis=-1, keepdims=True)).astype(np.float32)
-        d = (rng.uniform(-0.8, 0.8, (rays, 3)) - o).astype(np.float32)
         bvh, double = sl.accel.BVH(p, f), sl.accel.BVH(p.astype(float), f)
         scene = o3d.t.geometry.RaycastingScene(nthreads=2)
         scene.add_triangles(o3d.core.Tensor(p), o3d.core.Tensor(f.astype(np.uint32)))
-        packed, od, dd = np.concatenate([o, d], -1), o.astype(float), d.astype(float)
-        times = {"ours": [], "double": [], "open3d": []}
-        for _ in range(REPEATS):
-            start = time.perf_counter()
-            found = bvh.all_hits(o, d)
-            times["ours"].append(time.perf_counter() - start)
-            start = time.perf_counter()
-            double.all_hits(od, dd)
-            times["double"].append(time.perf_counter() - start)
-            start = time.perf_counter()
-            listed = scene.list_intersections(o3d.core.Tensor(packed))
-            theirs = {k: v.numpy() for k, v in listed.items()}
-            times["open3d"].append(time.perf_counter() - start)
-        ours, both, peer = (1e3 * float(np.median(times[k])) for k in ("ours", "double", "open3d"))
-        same = (np.diff(found.offsets) == np.diff(theirs["ray_splits"])).mean()
-        print(
-            f"{name:22} {len(found.t) / rays:8.2f} {ours:9.1f} {both:9.1f} {peer:10.1f} {peer / ours:6.1f} {same:11.5f}"
-        )
+        for kind, (o, d) in (("picture", picture(rays)), ("random", around(rays))):
+            packed, od, dd = np.concatenate([o, d], -1), o.astype(float), d.astype(float)
+            times = {"ours": [], "double": [], "open3d": []}
+            for _ in range(REPEATS):
+                start = time.perf_counter()
+                found = bvh.all_hits(o, d)
+                times["ours"].append(time.perf_counter() - start)
+                start = time.perf_counter()
+                double.all_hits(od, dd)
+                times["double"].append(time.perf_counter() - start)
+                start = time.perf_counter()
+                listed = scene.list_intersections(o3d.core.Tensor(packed))
+                theirs = {k: v.numpy() for k, v in listed.items()}
+                times["open3d"].append(time.perf_counter() - start)
+            ours, both, peer = (1e3 * float(np.median(times[k])) for k in ("ours", "double", "open3d"))
+            count = np.diff(found.offsets)
+            same = (count == np.diff(theirs["ray_splits"])).mean()
+            print(
+                f"{name:22} {kind:8} {len(found.t) / len(count):8.2f} {ours:9.1f} {both:9.1f} {peer:10.1f} "
+                f"{peer / ours:6.1f} {same:11.5f}"
+            )
 
 
 if __name__ == "__main__":

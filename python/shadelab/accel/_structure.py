@@ -254,8 +254,9 @@ class Structure:
         What is no ray (see `closest_hit`) has no hits. A ray through an edge that faces share meets them all or, within
         round-off, one of them. Memory is linear in hits: 16 bytes each in float32 (28 in float64), twice for a moment.
         """
-        _, rays = self._rays(origins, directions, t_min, t_max, ignore_face)
-        return AllHits(*_kernels.all_hits(self._tree, rays, _arrays.progress_callback(progress, "all_hits")))
+        shape, rays = self._rays(origins, directions, t_min, t_max, ignore_face)
+        callback = _arrays.progress_callback(progress, "all_hits")
+        return AllHits(*_kernels.all_hits(self._tree, rays, _width(shape), callback))
 
     def counts(
         self,

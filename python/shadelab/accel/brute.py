@@ -106,4 +106,4 @@ def brute_force_all(
     p, f = mesh_arrays(positions, faces)
     _, rays = ray_arrays(p.dtype, f.shape[0], origins, directions, t_min, t_max, ignore_face)
     callback = _arrays.progress_callback(progress, "brute_force_all")
-    return AllHits(*_kernels.all_hits(_kernels.brute_force(p, f), rays, callback))
+    return AllHits(*_kernels.all_hits(_kernels.brute_force(p, f), rays, 0, callback))

@@ -150,7 +150,7 @@ type Corners<T> = [[T; 3]; 2];
 impl<T: Real> Node<T> {
     #[inline]
     fn set(&mut self, slot: usize, child: Child, corners: Corners<T>) {
-        self.children[slot] = child;
+        self.set_child(slot, child);
         for side in 0..2 {
             for k in 0..3 {
                 self.planes[side][k][slot] = corners[side][k];

@@ -6,6 +6,8 @@ mod build;
 pub(crate) mod closest;
 mod collapse;
 mod cut;
+#[cfg_attr(not(feature = "python"), allow(dead_code))] // as above
+mod every;
 mod few;
 mod lbvh;
 mod node;

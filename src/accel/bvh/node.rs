@@ -53,6 +53,8 @@ pub struct Node<T> {
     /// `[lower, upper][axis][child]`.
     pub planes: [[[T; WIDTH]; 3]; 2],
     pub children: [Child; WIDTH],
+    /// The slots that hold leaves, as bits: where the node's size leaves room.
+    pub leaves: u32,
 }
 
 impl<T: Real> Node<T> {
@@ -60,7 +62,12 @@ impl<T: Real> Node<T> {
         Node {
             planes: [[[T::INFINITY; WIDTH]; 3], [[-T::INFINITY; WIDTH]; 3]],
             children: [Child::EMPTY; WIDTH],
+            leaves: 0,
         }
+    }
+    pub fn set_child(&mut self, slot: usize, child: Child) {
+        self.children[slot] = child;
+        self.leaves |= (child.is_leaf() as u32) << slot;
     }
 }
 

@@ -10,8 +10,11 @@
 use super::Bvh;
 use super::node::{Child, Entry, Node, Stack, key};
 use super::single::{planes, splat8};
+use crate::accel::Hit;
 use crate::accel::batch::{Sixteen, Source};
 use crate::accel::block::{BLOCK, Block, splat4};
+use crate::accel::lists::OutOfMemory;
+use crate::accel::met::Met;
 use crate::accel::ray::{Eight, Heading, Ready, load8, prepare, proper, slabs};
 use crate::geometry::ray_triangle::{Crossing, along, watertight};
 use crate::real::{Lanes, Real};
@@ -262,24 +265,67 @@ impl<T: Real, S: Simd> Packet<T, S> {
         false
     }
 
+    /// Adds every hit of the rays, which are those from number `first` on.
+    #[inline(always)]
+    pub fn every(&mut self, s: S, tree: &Bvh<T>, first: u32, met: &mut Met<T>) -> Result<(), OutOfMemory> {
+        black_box(&mut *self);
+        let end = self.end();
+        let mut stack = Stack::new();
+        stack.push(Entry::new(T::zero(), Child::ROOT));
+        while let Some(entry) = stack.pop() {
+            compiler_fence(Ordering::SeqCst);
+            let child = entry.child();
+            if child.is_leaf() {
+                for block in tree.run(child) {
+                    met.reserve(SIZE * BLOCK)?;
+                    self.block(s, block, end, first, met);
+                }
+                continue;
+            }
+            let node = tree.node(child);
+            let (mut bits, _) = self.children(s, node, end);
+            while bits != 0 {
+                let i = bits.trailing_zeros() as usize & 7;
+                bits &= bits - 1;
+                if self.any_passes(s, node, i) {
+                    stack.push(Entry::new(T::zero(), node.children[i]));
+                }
+            }
+        }
+        Ok(())
+    }
+
+    /// Adds every hit on the triangles of a block, for which there must be room.
+    #[inline(always)]
+    fn block(&self, s: S, block: &Block<T>, end: T, first: u32, met: &mut Met<T>) {
+        let mut boxes = self.own_boxes(s, block, end);
+        while let Some((lane, corners, own)) = boxes.next(s, block, self.heading.order) {
+            for g in 0..GROUPS {
+                let Some((mask, x)) = self.crossing(g, corners, own) else { continue };
+                let ray = &self.rays[g];
+                let mut bits = T::V8::<S>::bits(mask & Lanes::less(x.t, ray.t_max));
+                let t = (x.t * ray.scale + splat8(s, T::zero())).to_array();
+                let (u, v, face) = (x.u.to_array(), x.v.to_array(), block.faces[lane]);
+                while bits != 0 {
+                    let l = bits.trailing_zeros() as usize & 7;
+                    bits &= bits - 1;
+                    if self.ignore.is_none_or(|ignore| ignore[8 * g + l] != face) {
+                        met.put(first + (8 * g + l) as u32, Hit { t: t[l], u: u[l], v: v[l], face });
+                    }
+                }
+            }
+        }
+    }
+
     /// Tests the triangles of a leaf one by one; true if a ray's hit came nearer.
     #[inline(always)]
     fn leaf<const ANY: bool>(&mut self, s: S, blocks: &[Block<T>], end: T) -> bool {
-        let (mut nearer, order) = (false, self.heading.order);
+        let mut nearer = false;
         for block in blocks {
-            let OwnBoxes { mut bits, near, far } = self.own_boxes(s, block, end);
-            while bits != 0 {
-                let lane = bits.trailing_zeros() as usize & (BLOCK - 1);
-                bits &= bits - 1;
-                let a = broadcast(s, &block.vertices[0], lane, order);
-                let b = broadcast(s, &block.vertices[1], lane, order);
-                let c = broadcast(s, &block.vertices[2], lane, order);
-                let own = [
-                    [splat8(s, near[0][lane]), splat8(s, near[1][lane]), splat8(s, near[2][lane])],
-                    [splat8(s, far[0][lane]), splat8(s, far[1][lane]), splat8(s, far[2][lane])],
-                ];
+            let mut boxes = self.own_boxes(s, block, end);
+            while let Some((lane, corners, own)) = boxes.next(s, block, self.heading.order) {
                 for g in 0..GROUPS {
-                    nearer |= self.triangle::<ANY>(s, g, block.faces[lane], [a, b, c], own);
+                    nearer |= self.triangle::<ANY>(s, g, block.faces[lane], corners, own);
                 }
             }
         }
@@ -310,6 +356,27 @@ impl<T: Real, S: Simd> Packet<T, S> {
         boxes
     }
 
+    /// Where a group of rays crosses a triangle, not after its hits so far. What is raised to its own box's entry may come
+    /// after them.
+    #[inline(always)]
+    fn crossing(
+        &self,
+        g: usize,
+        [a, b, c]: Corners<T, S>,
+        [near, far]: [[T::V8<S>; 3]; 2],
+    ) -> Option<(<T::V8<S> as Lanes>::Mask, Crossing<T::V8<S>>)> {
+        let ray = &self.rays[g];
+        let (mask, x) = watertight(ray.origin, ray.shear, a.into(), b.into(), c.into())?;
+        let mask = mask & Lanes::less(ray.t_min, x.t) & Lanes::less_eq(x.t, self.t[g]);
+        if T::V8::<S>::bits(mask) == 0 {
+            return None;
+        }
+        // The triangle's own box, as in `single::leaf`.
+        let (entry, exit) = slabs(near, far, ray.near, ray.far, ray.inverse);
+        let mask = mask & Lanes::less_eq(entry, exit) & Lanes::less_eq(ray.t_min, exit);
+        Some((mask, Crossing { t: Lanes::max(x.t, entry), ..x }))
+    }
+
     /// Tests a triangle against a group of rays.
     #[inline(always)]
     fn triangle<const ANY: bool>(
@@ -317,25 +384,14 @@ impl<T: Real, S: Simd> Packet<T, S> {
         s: S,
         g: usize,
         face: i32,
-        [a, b, c]: [[T::V8<S>; 3]; 3],
-        [near, far]: [[T::V8<S>; 3]; 2],
+        corners: Corners<T, S>,
+        own: [[T::V8<S>; 3]; 2],
     ) -> bool {
-        let ray = &self.rays[g];
-        let Some((mask, x)) = watertight(ray.origin, ray.shear, a.into(), b.into(), c.into()) else {
-            return false;
-        };
-        let end = self.t[g];
-        let mask = mask & Lanes::less(ray.t_min, x.t) & Lanes::less_eq(x.t, end);
-        if T::V8::<S>::bits(mask) == 0 {
-            return false;
-        }
-        // The triangle's own box, as in `single::leaf`.
-        let (entry, exit) = slabs(near, far, ray.near, ray.far, ray.inverse);
-        let mask = mask & Lanes::less_eq(entry, exit) & Lanes::less_eq(ray.t_min, exit);
-        let t = Lanes::max(x.t, entry);
+        let Some((mask, x)) = self.crossing(g, corners, own) else { return false };
+        let (t, end) = (x.t, self.t[g]);
         let (better, equal) = (mask & Lanes::less(t, end), mask & t.equal(end));
         if self.ignore.is_some() || T::V8::<S>::bits(equal) != 0 {
-            return self.one_by_one::<ANY>(s, g, face, mask & Lanes::less_eq(t, end), Crossing { t, ..x });
+            return self.one_by_one::<ANY>(s, g, face, mask & Lanes::less_eq(t, end), x);
         }
         if T::V8::<S>::bits(better) == 0 {
             return false;
@@ -400,6 +456,36 @@ struct OwnBoxes<T> {
     near: [[T; BLOCK]; 3],
     far: [[T; BLOCK]; 3],
 }
+
+impl<T: Real> OwnBoxes<T> {
+    /// The next triangle that some ray may pass: its lane, its corners and its own box, for every ray.
+    #[inline(always)]
+    #[allow(clippy::type_complexity)]
+    fn next<S: Simd>(
+        &mut self,
+        s: S,
+        block: &Block<T>,
+        order: [usize; 3],
+    ) -> Option<(usize, Corners<T, S>, [[T::V8<S>; 3]; 2])> {
+        if self.bits == 0 {
+            return None;
+        }
+        let lane = self.bits.trailing_zeros() as usize & (BLOCK - 1);
+        self.bits &= self.bits - 1;
+        let a = broadcast(s, &block.vertices[0], lane, order);
+        let b = broadcast(s, &block.vertices[1], lane, order);
+        let c = broadcast(s, &block.vertices[2], lane, order);
+        let (near, far) = (&self.near, &self.far);
+        let own = [
+            [splat8(s, near[0][lane]), splat8(s, near[1][lane]), splat8(s, near[2][lane])],
+            [splat8(s, far[0][lane]), splat8(s, far[1][lane]), splat8(s, far[2][lane])],
+        ];
+        Some((lane, [a, b, c], own))
+    }
+}
+
+/// The corners of one triangle, for every ray.
+type Corners<T, S> = [[<T as Real>::V8<S>; 3]; 3];
 
 /// One vertex of one triangle of a block, for every ray.
 #[inline(always)]

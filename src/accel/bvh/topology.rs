@@ -161,7 +161,7 @@ impl Topology {
         let leaves = |&children: &Children| {
             let mut node = Node::empty();
             for (slot, child) in children.into_iter().enumerate() {
-                node.children[slot] = child;
+                node.set_child(slot, child);
                 if child != Child::EMPTY && child.is_leaf() {
                     let (first, count) = child.run();
                     set(&mut node, slot, blocks_bounds(&blocks[first..first + count]));

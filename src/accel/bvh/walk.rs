@@ -3,6 +3,8 @@
 use super::node::{Child, Entry, Stack, key};
 use super::{Bvh, single};
 use crate::accel::batch::{Sink, Source};
+use crate::accel::lists::OutOfMemory;
+use crate::accel::met::Met;
 use crate::accel::ray::{Heading, Ready};
 use crate::accel::structure::{Stats, Structure, Visit};
 use crate::real::Real;
@@ -51,5 +53,16 @@ impl<T: Real> Structure<T> for Bvh<T> {
     #[inline(always)]
     fn any_batch<S: Simd>(&self, s: S, count: usize, rays: impl Source<T>, answer: impl Sink<T>) {
         self.trace_batch::<true, S>(s, count, rays, answer);
+    }
+
+    #[inline(always)]
+    fn every_batch<S: Simd>(
+        &self,
+        s: S,
+        range: (usize, usize),
+        rays: impl Source<T>,
+        met: &mut Met<T>,
+    ) -> Result<(), OutOfMemory> {
+        self.every_hit(s, range, &rays, met)
     }
 }

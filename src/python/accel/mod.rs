@@ -99,11 +99,12 @@ pub mod accel {
         py: Python<'py>,
         structure: &Bound<'py, PyAny>,
         rays: [Bound<'py, PyAny>; 5],
+        width: usize,
         progress: Option<Py<PyAny>>,
     ) -> PyResult<[Bound<'py, PyAny>; 5]> {
         real!(&rays[0], T => {
             let (structure, rays) = (queries::<T>(structure)?, RayArrays::<T>::of(&rays)?);
-            let rays = rays.get()?;
+            let rays = rays.picture(width)?;
             let found = run(py, progress, |watch| structure.all_hits(watch, &rays, rays.origins.len()))?;
             Ok(hit_lists(py, found.map_err(|_| no_memory("hits"))?))
         })
