@@ -125,7 +125,7 @@ def test_draws_of_the_real_time_material_follow_the_density(metallic, compensati
 @pytest.mark.parametrize("cosine", [1e-7, 1e-3, 0.1, 1.0])
 @pytest.mark.parametrize("compensation", ["kulla_conty", "scaled"])
 def test_sharp_mirrors_are_given_no_more_than_came(alpha, cosine, compensation):
-    """Smooth mirrors lose nothing. The lobe does not depend on the azimuth and lies at grazing, where few draws fall."""
+    """Smooth mirrors lose nothing. The lobe is even in azimuth and lies at grazing, where few draws fall."""
     wo = np.array([np.sqrt(1 - cosine**2), 0, cosine])
     once = brdf.RoughConductor(alpha, **WHITE)
     model = brdf.RoughConductor(alpha, **WHITE, compensation=compensation)
