@@ -10,7 +10,7 @@ from typing import Any
 import numpy as np
 import pytest
 import shadelab as sl
-from shadelab import accel, geometry, light, raster, scene, shadow, transform
+from shadelab import accel, brdf, environment, geometry, light, raster, scene, shadow, transform
 
 CHAPTERS = {"transform": transform, "geometry": geometry, "accel": accel}
 
@@ -201,6 +201,51 @@ OTHERS: dict[str, tuple[Callable[..., Any], dict[str, Any]]] = {
         {"attributes": np.ones((3, 1)), "faces": SEEN["faces"], "raster": raster.rasterize(**SEEN)},
     ),
     "light.with_flux": (light.with_flux, {"light": PANEL, "watts": 1.0}),
+    "light.flux": (light.flux, {"light": PANEL}),
+    "light.intensity": (light.intensity, {"light": PANEL, "directions": -R}),
+    "light.irradiance": (light.irradiance, {"light": PANEL, "points": P, "normals": R}),
+    "light.light_sample": (light.light_sample, {"light": PANEL, "points": P, "u": [0.5, 0.25]}),
+    "light.light_pdf": (light.light_pdf, {"light": PANEL, "points": P, "wi": R}),
+    "light.ltc": (light.ltc, {"light": PANEL, "points": P, "normals": R, "wo": R, "alpha": 0.3}),
+    "light.fit_ltc": (light.fit_ltc, {"size": (2, 2), "steps": 2}),
+    "light.polygon_irradiance": (light.polygon_irradiance, {"corners": SQUARE + R, "points": P, "normals": R}),
+    "light.unshadowed": (
+        light.unshadowed,
+        {"lights": PANEL, "points": P, "normals": R, "base_color": Q, "wo": R, "samples": 2},
+    ),
+    "light.LightSelection": (light.LightSelection, {"lights": [PANEL, SUN]}),
+    "light.PointLight": (light.PointLight, {"position": P}),
+    "light.SpotLight": (light.SpotLight, {"position": P, "direction": -R}),
+    "light.DirectionalLight": (light.DirectionalLight, {"direction": -R}),
+    "light.RectLight": (light.RectLight, {"center": P, "edge_u": Q, "edge_v": S}),
+    "light.DiskLight": (light.DiskLight, {"center": P, "normal": R, "radius": 1.0}),
+    "light.SphereLight": (light.SphereLight, {"center": P, "radius": 1.0}),
+    "light.PolygonLight": (light.PolygonLight, {"corners": SQUARE}),
+    "light.AmbientLight": (light.AmbientLight, {}),
+    "scene.Camera": (scene.Camera, {"eye": P, "target": Q}),
+    "scene.Material": (scene.Material, {}),
+    "scene.Instance": (scene.Instance, {"mesh": BALL}),
+    "scene.Scene": (scene.Scene, {"instances": [BALL]}),
+    "environment.Environment": (environment.Environment, {"radiance": np.ones((2, 4, 3))}),
+    **{
+        f"brdf.{name}": (getattr(brdf, name), {})
+        for name in (
+            "Diffuse",
+            "Dielectric",
+            "MetallicRoughness",
+            "Principled",
+            "RoughDielectric",
+        )
+    },
+    "brdf.Model.eval": (brdf.Principled().eval, {"wi": S, "wo": S}),
+    "brdf.Model.pdf": (brdf.Principled().pdf, {"wi": S, "wo": S}),
+    "brdf.Model.sample": (brdf.Principled().sample, {"wo": S, "u": P % 1}),
+    "brdf.ndf": (brdf.ndf, {"normals": S, "alpha": 0.5}),
+    "brdf.fresnel": (brdf.fresnel, {"cos_theta": 0.5, "eta": 1.5}),
+    "brdf.fresnel_average": (brdf.fresnel_average, {"eta": 1.5}),
+    "brdf.reflect": (brdf.reflect, {"w": S, "normal": S}),
+    "brdf.directional_albedo": (brdf.directional_albedo, {"model": brdf.Diffuse(), "wo": S, "samples": 4}),
+    "brdf.white_furnace": (brdf.white_furnace, {"model": brdf.Diffuse(), "directions": 2, "samples": 4}),
     "shadow.shadow_map": (shadow.shadow_map, {**THINGS, "light": PANEL, "resolution": 32}),
     "shadow.cube_shadow_map": (
         shadow.cube_shadow_map,
@@ -297,6 +342,7 @@ RELATED = {
     ("raster.interpolate", "attributes"): "faces",
     ("raster.interpolate", "faces"): "raster",
     ("shadow.cascade_splits", "near"): "far",
+    **{("light.unshadowed", n): "base_color" for n in ("metallic", "roughness", "specular")},
     ("shadow.distance_grid", "sources"): "bounds",
     **{(f"shadow.{n}", "positions"): "faces" for n in ("shadow_map", "cube_shadow_map", "cascades")},
     ("shadow.virtual_shadow_map", "positions"): "faces",
@@ -342,6 +388,21 @@ def test_hostile_values_name_their_argument(name: str) -> None:
         if (said := complaint(name, argument, value))
     }
     assert not wrong, "\n".join(f"{k}: {v}" for k, v in wrong.items())
+
+
+@pytest.mark.parametrize("kind", ["none", "object", "bytes", "dict", "fraction", "integers", "function", "class"])
+@pytest.mark.parametrize("f", [scene.load, scene.load_mesh, scene.load_image, environment.Environment.load])
+def test_paths_of_other_kinds_name_their_argument(f: Callable[..., Any], kind: str) -> None:
+    with pytest.raises(TypeError, match="path: expected a path, got"):
+        f(HOSTILE[kind])
+    with pytest.raises(TypeError, match="path: expected a path, got"):
+        scene.save_image(HOSTILE[kind], np.ones((2, 2, 3)))
+
+
+@pytest.mark.parametrize("path", ["", "a\0b.png"])
+def test_paths_of_no_file_are_named(path: str) -> None:
+    with pytest.raises(ValueError, match="path: expected the path of a file"):
+        scene.load_image(path)
 
 
 def same(a: Any, b: Any) -> None:

@@ -8,8 +8,10 @@ from __future__ import annotations
 
 import math
 import operator
+import os
 import warnings
 from collections.abc import Callable, Mapping, Sequence
+from pathlib import Path
 from typing import Any, TypeAlias
 
 import numpy as np
@@ -229,9 +231,14 @@ def number(
 ) -> float:
     """A finite Python float in [low, high], and strictly between `above` and `below` if given."""
     try:
+        if isinstance(value, np.complexfloating) or (isinstance(value, np.ndarray) and value.dtype.kind == "c"):
+            # NumPy would drop the imaginary part with a warning.
+            raise TypeError
         x = float(value)
     except (TypeError, ValueError):
         raise TypeError(f"{name}: expected a number, got {type(value).__name__}") from None
+    except OverflowError:
+        raise ValueError(f"{name}: expected a number in the range of floats, got {type(value).__name__}") from None
     if not math.isfinite(x):
         raise ValueError(f"{name}: expected a finite number, got {x}")
     if x < low or x > high or (above is not None and x <= above) or (below is not None and x >= below):
@@ -255,11 +262,26 @@ def count(name: str, value: Any, low: int = 0, high: int | None = None) -> int:
 
 def counts(name: str, value: Any, n: int, low: int = 0, high: int | None = None) -> tuple[int, ...]:
     """`n` integers in [low, high]."""
-    if isinstance(value, str | bytes | dict | set) or not hasattr(value, "__len__") or not hasattr(value, "__iter__"):
+    try:
+        given = () if isinstance(value, str | bytes | dict | set) else tuple(value)
+    except TypeError:
+        given = ()
+    if len(given) != n:
         raise TypeError(f"{name}: expected {n} integers, got {type(value).__name__}")
-    if len(value) != n:
-        raise ValueError(f"{name}: expected {n} integers, got {len(value)}")
-    return tuple(count(name, x, low, high) for x in value)
+    return tuple(count(name, x, low, high) for x in given)
+
+
+def path(name: str, value: Any) -> Path:
+    """A path of a file."""
+    try:
+        given = os.fspath(value)
+    except TypeError:
+        raise TypeError(f"{name}: expected a path, got {type(value).__name__}") from None
+    if isinstance(given, bytes):
+        raise TypeError(f"{name}: expected a path, got bytes")
+    if not given or "\0" in given:
+        raise ValueError(f"{name}: expected the path of a file, got {given!r}")
+    return Path(given)
 
 
 def choice(name: str, value: Any, options: Sequence[str]) -> str:

@@ -14,7 +14,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from numpy.typing import NDArray
 
-from . import color, transform
+from . import _arrays, color, transform
 from . import mesh as _mesh
 from ._arrays import Floats
 from .mesh import Mesh
@@ -70,7 +70,7 @@ def load(path: str | os.PathLike[str], *, stage: bool = True) -> Scene:
     """
     from .scene import Instance, Material, Scene, fit_camera
 
-    things = _instances(Path(path))
+    things = _instances(_arrays.path("path", path))
     if not stage:
         return Scene(things)
     from .light import RectLight
@@ -118,7 +118,7 @@ def load_mesh(path: str | os.PathLike[str]) -> Mesh:
     """
     from .scene import Scene
 
-    flat = Scene(_instances(Path(path))).flatten(np.float64)
+    flat = Scene(_instances(_arrays.path("path", path))).flatten(np.float64)
     return Mesh(flat.positions, flat.faces, flat.normals, flat.uvs, flat.colors)
 
 

@@ -55,7 +55,7 @@ def save_image(path: str | os.PathLike[str], image: ArrayLike) -> None:
     >>> load_image(path)[0, 0]
     array([0.5, 0.5, 0.5], dtype=float32)
     """
-    path = Path(path)
+    path = _arrays.path("path", path)
     suffix = _suffix(path)
     array = np.asarray(image)
     if array.dtype == np.uint8 and suffix == ".png":
@@ -105,7 +105,7 @@ def load_image(path: str | os.PathLike[str]) -> NDArray[np.float32]:
     Traceback (most recent call last):
     ValueError: picture.webp: unknown format '.webp'; expected one of .png, .exr, .hdr
     """
-    path = Path(path)
+    path = _arrays.path("path", path)
     suffix = _suffix(path)
     if not path.is_file():
         raise FileNotFoundError(f"{path}: no such file")

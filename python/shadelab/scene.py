@@ -373,7 +373,10 @@ class Scene:
         set_ = object.__setattr__
         if not isinstance(self.instances, Instance | Mesh | Iterable):
             raise TypeError(f"instances: expected Instance or Mesh, or several, got {type(self.instances).__name__}")
-        given = [self.instances] if isinstance(self.instances, Instance | Mesh) else list(self.instances)
+        try:
+            given = [self.instances] if isinstance(self.instances, Instance | Mesh) else list(self.instances)
+        except TypeError:
+            raise TypeError("instances: expected Instance or Mesh, or several, got no sequence") from None
         for thing in given:
             if not isinstance(thing, Instance | Mesh):
                 raise TypeError(f"instances: expected Instance or Mesh, got {type(thing).__name__}")

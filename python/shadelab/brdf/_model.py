@@ -190,7 +190,7 @@ class Model:
         shape, (wi, wo), table = self._given(wi=wi, wo=wo)
         out = _arrays.output("out", out, (*shape, 3), wi.dtype)
         _kernels.model_eval(table, wi, wo, out.reshape(-1, 3))
-        if not full_output:
+        if not _arrays.flag("full_output", full_output):
             return out
         if not self._facets:
             raise ValueError(f"full_output: {type(self).__name__} is no model of facets")

@@ -248,7 +248,7 @@ def kulla_conty(
     )
     shape, albedo_i, albedo_o, average, factor = found
     result = KullaConty(shape * factor, shape, factor, albedo_i, albedo_o, average)
-    return result if full_output else result.value
+    return result if _arrays.flag("full_output", full_output) else result.value
 
 
 class AlbedoTable(NamedTuple):

@@ -60,6 +60,8 @@ def reflected_radiance(
     >>> reflected_radiance(brdf.Diffuse(0.5), [0, 0, 1], lambda w: w[:, 2], 1024).round(3)
     array([0.333, 0.333, 0.333])
     """
+    if not isinstance(model, Model):
+        raise TypeError(f"model: expected a Model, got {type(model).__name__}")
     samples = _arrays.count("samples", samples, 1, 1 << 22)
     wo = _arrays.vectors("wo", wo)
     flat = wo.reshape(-1, 3)

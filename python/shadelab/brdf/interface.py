@@ -290,7 +290,7 @@ def fresnel(
         s, p = _arrays.elementwise(_kernels.fresnel_conductor, given, [0, 0], knobs={"eta": eta, "k": k})
         cos_t = np.zeros_like(s)
     average = np.asarray((s + p) * s.dtype.type(0.5))
-    return Fresnel(average, s, p, cos_t) if full_output else average
+    return Fresnel(average, s, p, cos_t) if _arrays.flag("full_output", full_output) else average
 
 
 def fresnel_average(

@@ -205,6 +205,7 @@ def ltc(
     >>> bool(ltc(light, [0.0, 0, 0], up, up, 0.01)[0] > 0.99)
     True
     """
+    full_output = _arrays.flag("full_output", full_output)
     if not isinstance(light, RectLight | PolygonLight | DiskLight | SphereLight):
         raise TypeError(f"light: expected a light with an outline, got {type(light).__name__}")
     dtype = _arrays.result_dtype(points=points, normals=normals, wo=wo)
@@ -219,7 +220,9 @@ def ltc(
     _kernels.ltc_light(_table("light", light), own, flat, parts)
     base, edge = (np.ascontiguousarray(p).reshape(shape) for p in parts.T[:2])
     low, high = (_colors(n, v, dtype) for n, v in (("f0", f0), ("f90", f90)))
-    radiance = (low * base[..., None] + (high - low) * edge[..., None]) * parts[:, 2:].reshape(*shape, 3)
+    with np.errstate(invalid="ignore", over="ignore"):
+        # Reflectances that are no numbers give none.
+        radiance = (low * base[..., None] + (high - low) * edge[..., None]) * parts[:, 2:].reshape(*shape, 3)
     return Ltc(radiance, base, edge) if full_output else radiance
 
 

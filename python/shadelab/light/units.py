@@ -104,6 +104,8 @@ def intensity(light: Light, directions: ArrayLike) -> Floats:
     array([6., 6., 6.])
     """
     w = _arrays.vectors("directions", directions)
+    # What is infinite is no direction.
+    w = np.where(np.isfinite(w).all(-1, keepdims=True), w, np.nan).astype(w.dtype)
     ones = w[..., 0] * 0 + 1
     share: Any
     if isinstance(light, PointLight):
@@ -122,7 +124,8 @@ def intensity(light: Light, directions: ArrayLike) -> Floats:
         share, color = ones * math.pi * light.radius**2, light.radiance
     else:
         raise TypeError(f"light: expected a light with a place, got {type(light).__name__}")
-    result: Floats = (np.asarray(share)[..., None] * np.asarray(color)).astype(w.dtype)
+    with np.errstate(invalid="ignore", over="ignore"):
+        result: Floats = (np.asarray(share)[..., None] * np.asarray(color)).astype(w.dtype)
     return result
 
 
