@@ -221,6 +221,14 @@ impl<T: Real> Light<T> {
         self.meet(from, wi).map_or(T::zero(), |s| s.pdf)
     }
 
+    /// Whether rays may meet it somewhere.
+    pub fn stands(&self) -> bool {
+        matches!(
+            self,
+            Light::Rect(_) | Light::Textured(_) | Light::Disk(_) | Light::Sphere(_) | Light::Polygon(_)
+        )
+    }
+
     /// Light that arrives if nothing is in between: a beam, or one draw from an area.
     #[inline(always)]
     pub fn sample(&self, from: Vec3<T>, u: [T; 2]) -> Option<Arrival<T>> {

@@ -216,7 +216,7 @@ fn ask_lights<T: Real, S: Simd>(
         let pair = tracer.pair(depth, purpose::LIGHT + k as u32);
         let mut light = arrivals(s, tracer, group, &sources, &pick, pair, &chances);
         light.seen &= asked;
-        cast::<T, S>(tracer, wave, group, &light, load(s, &chances));
+        cast::<T, S>(tracer, wave, group, &light, &sources, load(s, &chances));
     }
 }
 
@@ -319,6 +319,7 @@ fn cast<T: Real, S: Simd>(
     wave: &mut Wave<T>,
     group: &Group<T::V8<S>>,
     light: &Arrivals<T::V8<S>>,
+    sources: &[usize; 8],
     chance: T::V8<S>,
 ) {
     let (zero, one) = (light.pdf.num(0.0), light.pdf.num(1.0));
@@ -352,7 +353,7 @@ fn cast<T: Real, S: Simd>(
             t_max: distance[l],
             ignore_face: -1,
         });
-        wave.carried.push((row(&value, l).into(), group.slots[l]));
+        wave.carried.push((row(&value, l).into(), group.slots[l], sources[l] as u32));
     }
 }
 

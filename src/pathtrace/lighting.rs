@@ -38,6 +38,8 @@ pub struct Lighting<T> {
     faces: usize,
     count: usize,
     sky: bool,
+    /// Whether lights may stand before other sources.
+    hide: bool,
 }
 
 impl<T: Real> Lighting<T> {
@@ -81,7 +83,25 @@ impl<T: Real> Lighting<T> {
             faces,
             count: sources.len(),
             sky: scene.environment.is_some(),
+            hide: sources.len() > 1 && scene.lights.iter().any(Light::stands),
         }
+    }
+
+    /// Whether a light stands in the way of a shadow ray to another source: as those stop paths that meet them.
+    #[inline(always)]
+    pub fn hides(&self, lights: &[Light<T>], ray: &Ray<T>, source: usize) -> bool {
+        if !self.hide {
+            return false;
+        }
+        for (k, light) in lights.iter().enumerate() {
+            if k != source
+                && let Some(sighting) = light.meet(ray.origin.into(), ray.direction.into())
+                && sighting.distance < ray.t_max
+            {
+                return true;
+            }
+        }
+        false
     }
 
     #[inline(always)]

@@ -2,8 +2,8 @@
 //!
 //! At each surface lights are asked directly (next-event estimation), and the path goes on in a direction of the
 //! material. Area lights and emitting faces can be reached in both ways, which the power heuristic weighs; or one way
-//! alone is taken. Paths that carry little end by Russian roulette. Rectangles are seen from the side that
-//! shines, and stop the path there; from behind they are not there, and they shade nothing. Surfaces have two sides.
+//! alone is taken. Paths that carry little end by Russian roulette. Lights of some size are seen from the side that
+//! shines, and stop there paths and the light of others; from behind they are not there. Surfaces have two sides.
 //! Random numbers come from pixel, sample and seed alone.
 //!
 //! Paths of a square of pixels run together as a wave: the camera's rays of a pixel and its neighbours are traced

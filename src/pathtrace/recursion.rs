@@ -140,7 +140,8 @@ impl<T: Real> Stage<'_, T> {
             return none;
         }
         let ray = leave(site.point, site.normal, light.wi, self.scene.offset, light.distance);
-        if self.bvh().any_hit(s, &ray) { none } else { value }
+        let hidden = self.lighting.hides(self.scene.lights, &ray, source);
+        if hidden || self.bvh().any_hit(s, &ray) { none } else { value }
     }
 }
 

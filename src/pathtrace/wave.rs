@@ -11,7 +11,7 @@ use super::path_trace::{Options, Strategy};
 use super::surface::Spot;
 use super::{Surfaces, leave};
 use crate::accel::{Hit, Ray};
-use crate::brdf::Draw;
+use crate::brdf::{Bsdf, Draw};
 use crate::light::Light;
 use crate::math;
 use crate::real::{Lanes, Real};
@@ -62,8 +62,8 @@ pub struct Wave<T> {
     pub next_rays: Vec<Ray<T>>,
     pub next_paths: Vec<Path<T>>,
     pub shadow_rays: Vec<Ray<T>>,
-    /// What each shadow ray carries if nothing is in its way, and to which slot.
-    pub carried: Vec<(Vec3<T>, u32)>,
+    /// What each shadow ray carries if nothing is in its way, to which slot, from which source.
+    pub carried: Vec<(Vec3<T>, u32, u32)>,
     blocked: Vec<bool>,
     /// Paths that met diffusers, and those that met other materials.
     diffuse: Vec<u32>,
@@ -295,7 +295,7 @@ impl<T: Real> Tracer<'_, T> {
             if value != Vec3::splat(T::zero()) {
                 let ray = leave(spot.point, spot.normal, light.wi, self.scene.offset, light.distance);
                 wave.shadow_rays.push(ray);
-                wave.carried.push((value, path.slot));
+                wave.carried.push((value, path.slot, source as u32));
             }
         }
     }
@@ -307,7 +307,17 @@ impl<T: Real> Tracer<'_, T> {
         let (key, sample) = (wave.keys[path.slot as usize], wave.samples[path.slot as usize]);
         let u: [T; 2] = self.draws.pair(key, sample, self.pair(depth, purpose::DIRECTION));
         let [lobe, fate] = self.draws.pair::<T>(key, sample, self.pair(depth, purpose::CHOICE));
-        let draw = if self.options.strategy == Strategy::Uniform && !spot.bsdf.is_smooth() {
+        let mut lobe = lobe;
+        let mut half = one;
+        let mut uniform = self.options.strategy == Strategy::Uniform && !spot.bsdf.is_smooth();
+        let mixed = uniform && partly_smooth(&spot.bsdf);
+        if mixed {
+            // What no direction finds is drawn by the material, and only that: half of the time, so twice as much.
+            (lobe, half) = (lobe + lobe, one + one);
+            uniform = lobe < one;
+            lobe = if uniform { lobe } else { lobe - one };
+        }
+        let draw = if uniform {
             let mut wi = uniform_hemisphere(u[0], u[1]);
             if spot.bsdf.transmits() && lobe < T::of(0.5) {
                 wi = -wi;
@@ -318,7 +328,13 @@ impl<T: Real> Tracer<'_, T> {
         } else {
             spot.bsdf.sample(spot.wo, [u[0], u[1], lobe])
         };
-        let Some(draw) = draw else { return };
+        let Some(mut draw) = draw else { return };
+        if mixed {
+            if !uniform && !draw.specular {
+                return;
+            }
+            draw.weight = draw.weight * half;
+        }
         let out = spot.frame.world(draw.wi);
         if !(draw.pdf > zero && spot.agrees(draw.wi, out)) {
             return;
@@ -368,8 +384,9 @@ impl<T: Real> Tracer<'_, T> {
         if let Some(copies) = self.scene.copies {
             copies.any_hits(s, &wave.shadow_rays, &mut wave.blocked);
         }
-        for (i, &(value, slot)) in wave.carried.iter().enumerate() {
-            if !wave.blocked[i] {
+        for (i, &(value, slot, source)) in wave.carried.iter().enumerate() {
+            let ray = &wave.shadow_rays[i];
+            if !wave.blocked[i] && !self.lighting.hides(self.scene.lights, ray, source as usize) {
                 let sum = &mut wave.sums[slot as usize];
                 *sum = *sum + value;
             }
@@ -383,6 +400,12 @@ impl<T: Real> Tracer<'_, T> {
         super::diffuse::shade(s, self, wave, &queue, depth);
         wave.diffuse = queue;
     }
+}
+
+/// Whether a material may have a perfect mirror or pane beside what is rough.
+#[inline(always)]
+fn partly_smooth<T: Real>(bsdf: &Bsdf<T>) -> bool {
+    matches!(bsdf, Bsdf::Plastic(_) | Bsdf::RoughDielectric(_) | Bsdf::Principled(_))
 }
 
 /// A direction about z, evenly over the hemisphere.

@@ -8,7 +8,8 @@ import numpy as np
 import pytest
 import shadelab as sl
 from scipy import stats
-from shadelab import mesh, scene
+from shadelab import brdf, light, mesh, scene
+from shadelab.environment import Environment
 from shadelab.light import RectLight
 from shadelab.pathtrace.paths import Sampler, Strategy
 
@@ -239,3 +240,68 @@ def test_a_bvh_of_other_vertices_is_refused():
         sl.pathtrace.path_trace(ball, (4, 4), samples=1, bvh=5)
     with pytest.raises(TypeError, match="bvh: expected a BVH"):
         sl.pathtrace.direct_light(5, [], [0.0, 0, 0], [0.0, 1, 0], [0.5] * 3, eye=[0.0, 1, 0])
+
+
+def spot_seen(world, depth, strategy, samples=1024, **options):
+    """The mean of 16 × 16 pixels that see nearly the same, and its standard error."""
+    options = {"strategy": strategy, "seed": 11, "dtype": np.float64, **options}
+    traced = sl.pathtrace.path_trace(world, (16, 16), samples, depth, **options)
+    pixels = traced.radiance.mean(-1)
+    return pixels.mean(), pixels.std(ddof=1) / 16
+
+
+def agree(world, depth=1, strategies=get_args(Strategy), **options):
+    seen = np.array([spot_seen(world, depth, s, **options) for s in strategies])
+    # Scrambled points err alike over pixels hardly at all: five standard errors, and what rounding leaves.
+    bound = 5 * np.hypot(seen[:, 1], seen[0, 1]) + 1e-6 * seen[0, 0]
+    np.testing.assert_array_less(np.abs(seen[:, 0] - seen[0, 0]), bound + 1e-12)
+    return seen[0, 0]
+
+
+def open_floor(material, lights=(), **surroundings):
+    floor = scene.Instance(mesh.plane((40, 40)), None, (material,))
+    return scene.Scene([floor], lights, scene.Camera((2, 2, 0), (0, 0, 0), fov_y=0.02), **surroundings)
+
+
+HIDING = {
+    "rectangle": light.RectLight((0, 1, 0), (1, 0, 0), (0, 0, 1), (1,) * 3),
+    "sphere": light.SphereLight((0, 1, 0), 0.4, (1,) * 3),
+}
+
+
+@pytest.mark.parametrize("near", HIDING)
+@pytest.mark.parametrize("behind", ["panel", "point", "sky", "mesh"])
+def test_a_light_before_another_hides_it_however_it_is_looked_for(near, behind):
+    panel = light.RectLight((0, 2, 0), (4, 0, 0), (0, 0, 4), (5,) * 3)
+    others = {"panel": (panel,), "point": (light.PointLight((0, 3, 0), (9,) * 3),)}.get(behind, ())
+    more = {}
+    if behind == "sky":
+        pixels = np.ones((8, 16, 3))
+        pixels[:3] = 4
+        more["environment"] = Environment(pixels)
+    world = open_floor(brdf.Diffuse((0.8,) * 3), (HIDING[near], *others), **more)
+    if behind == "mesh":
+        glow = scene.Material((0, 0, 0), emission=(5.0,) * 3)
+        ceiling = scene.Instance(mesh.plane((4, 4)), sl.transform.translate((0, 2, 0)), (glow,))
+        world = scene.Scene([*world.instances, ceiling], world.lights, world.camera)
+    both = agree(world)
+    alone = agree(open_floor(brdf.Diffuse((0.8,) * 3), (HIDING[near],)))
+    if behind == "point":
+        # It stands right behind: only the near one is left.
+        assert both == pytest.approx(alone, rel=1e-3)
+    else:
+        assert both > 1.5 * alone
+
+
+MIXED = {
+    "plastic": brdf.Plastic((0.5,) * 3),
+    "nonlinear": brdf.Plastic((1.0,) * 3, nonlinear=True),
+    "pane": brdf.RoughDielectric(0.3, 1.0),
+    "glass": brdf.RoughDielectric(0.3, 1.5),
+    "principled": brdf.Principled((0.5,) * 3, eta=1.0, spec_trans=0.5, form="2015"),
+}
+
+
+@pytest.mark.parametrize("name", MIXED)
+def test_strategies_agree_where_mirrors_lie_over_rough_ground(name):
+    assert agree(open_floor(MIXED[name], background=(1, 1, 1)), samples=256) > 0.1

@@ -113,14 +113,14 @@ def path_trace(
     -----
     Unbiased up to `max_depth`, without `clamp` and `target_error`. Time is the same for every sample, whatever their
     number, and memory does not grow with it. `variance` is that of independent samples: of scrambled points an upper
-    bound as a rule, so two seeds tell more.
-    Rectangles are seen from the side that shines, stop what meets it, and are not there from behind;
-    surfaces have two sides. (`shadelab.render` draws no lights.) The camera's `near` and `far` cut nothing off:
-    paths start at the eye. Light that comes evenly from everywhere (background, `AmbientLight`, an environment of one
-    colour) is left to directions whatever the strategy: asking for it too took a bunny 1.6 to 2.6 times as long to the
-    same error. Of a panorama each surface draws two directions, and looks along the one kept by what it would bring.
-    No firefly is clamped: caustics from narrow mirrors converge slowly, and `variance` shows
-    where, and `outliers` how often one sample outweighed all before it.
+    bound as a rule, so two seeds tell more. Lights of some size are seen from the side that shines, stop there what
+    meets them, other lights' and the sky's light too, and are not there from behind; surfaces have two sides.
+    (`shadelab.render` draws no lights.) The camera's `near` and `far` cut nothing off: paths start at the eye. Light
+    that comes evenly from everywhere (background, `AmbientLight`, an environment of one colour) is left to directions
+    whatever the strategy: asking for it too took a bunny 1.6 to 2.6 times as long to the same error. Of a panorama each
+    surface draws two directions, and looks along the one kept by what it would bring. No firefly is clamped: caustics
+    from narrow mirrors converge slowly, and `variance` shows where, and `outliers` how often one sample outweighed all
+    before it.
 
     Stopping at `target_error` is biased: a square that by chance has met no bright path yet thinks itself done.
     Measured over ten pictures of 24 × 16: a floor under an area light, none to 0.05 % at targets of 0.1 and 0.03; the

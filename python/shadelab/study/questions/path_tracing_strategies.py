@@ -195,5 +195,5 @@ def question() -> Question:
         display=_display,
         size=(96, 64),
         about=" ".join(_ABOUT.split()),
-        max_error=0.1,
+        max_error=0.2,
     )

@@ -213,5 +213,5 @@ def question() -> Question:
         size=(24, 16),
         about=" ".join(_ABOUT.split()),
         element="average",
-        max_error=1e-3,
+        max_error=0.01,
     )
