@@ -10,9 +10,10 @@ from numpy.typing import ArrayLike
 from .. import _arrays
 from .._arrays import Floats
 from .._kernels import shadow as _kernels
-from ._lookup import _receivers, _result
+from ._lookup import _looked_up, _receivers, _result
+from ._sets import MapSet
 from .bounds import _METHODS, BIAS, Method
-from .moments import MomentMap
+from .moments import MomentMap, MomentMapSet
 
 __all__ = ["FilteredLookup", "exponential_variance", "moment", "variance"]
 
@@ -31,16 +32,22 @@ class FilteredLookup(NamedTuple):
     """The receiver's depth less its biases, in [-1, 1] as moments have it; NaN outside of the map."""
 
 
-def _moment_map(value: Any, kind: str) -> MomentMap:
-    if not isinstance(value, MomentMap):
+def _moment_map(value: Any, kind: str) -> MomentMap | MomentMapSet:
+    if not isinstance(value, MomentMap | MomentMapSet):
         raise TypeError(f"moment_map: expected a MomentMap, got {type(value).__name__}")
     if value.kind != kind:
         raise ValueError(f"moment_map: expected kind {kind!r}, got {value.kind!r}")
     return value
 
 
-def _asked(m: MomentMap, least: float, method: str, bias: float | None) -> tuple[Any, ...]:
+def _first(m: MomentMap | MomentMapSet) -> MomentMap:
+    """One that stands for all of a set."""
+    return m if isinstance(m, MomentMap) else m.maps[0]
+
+
+def _asked(given: MomentMap | MomentMapSet, least: float, method: str, bias: float | None) -> tuple[Any, ...]:
     """The bound and its knobs, as the kernel takes them."""
+    m = _first(given)
     if m.kind != "moment":
         return (m.kind, m.exponents), (_arrays.number("min_variance", least, 0.0), 0.0), ""
     _arrays.choice("method", method, _METHODS)
@@ -52,23 +59,45 @@ def _asked(m: MomentMap, least: float, method: str, bias: float | None) -> tuple
     return (m.kind, m.exponents), (share, target), method
 
 
-def _bias(m: MomentMap, bias: float, slope_bias: float, normal_offset: float, light_bleeding: float) -> list[float]:
-    # Moments round depths as shares of their range.
-    rounding = m.shadow_map.granted + 16.0 * float(np.finfo(m.shadow_map.depth.dtype).eps) * max(
-        abs(m.near), abs(m.far)
-    )
-    return [
-        _arrays.number("bias", bias) + rounding,
+def _bias(bias: float, slope_bias: float, normal_offset: float, light_bleeding: float) -> tuple[float, ...]:
+    return (
+        _arrays.number("bias", bias),
         _arrays.number("slope_bias", slope_bias, 0.0),
         _arrays.number("normal_offset", normal_offset, 0.0),
         _arrays.number("light_bleeding", light_bleeding, 0.0, below=1.0),
-    ]
+    )
+
+
+def _looked(
+    given: MomentMap | MomentMapSet,
+    points: Floats,
+    normals: Floats | None,
+    asked: tuple[Any, ...],
+    bias: tuple[float, ...],
+    width: Any,
+    results: list[Floats],
+    blanks: list[float],
+) -> None:
+    """Looks into the map that each receiver falls in; `results` begins with the lit fraction."""
+
+    def look(_: Any, chart: tuple[Any, ...], granted: Any, to: Any) -> None:
+        m = given if isinstance(given, MomentMap) else given.maps[chart[5][1]]
+        store = (m.moments, m._levels(), m.filter == "summed_area", m.reduce, m._range())
+        rest = [granted[0] + _rounding(m), *bias[1:]]
+        _kernels.filtered(chart, store, points, normals, asked, rest, width, to[0], list(to[1:]) or None)
+
+    _looked_up(given.shadow_map, points, normals, (bias[0], 0.0, 0.0, False), results, blanks[: len(results)], look)
+
+
+def _rounding(m: MomentMap) -> float:
+    """Moments round depths as shares of their range."""
+    return 16.0 * float(np.finfo(m.shadow_map.depth.dtype).eps) * max(abs(m.near), abs(m.far))
 
 
 def _lookup(
-    m: MomentMap,
+    m: MomentMap | MomentMapSet,
     asked: tuple[Any, ...],
-    bias: list[float],
+    bias: tuple[float, ...],
     receivers: ArrayLike,
     normals: ArrayLike | None,
     radius: float | None,
@@ -78,33 +107,26 @@ def _lookup(
     chosen = m.filter in ("mip", "summed_area")
     if radius is not None and not chosen:
         raise ValueError(f"radius: the map was filtered beforehand, by filter {m.filter!r}")
-    half = m.reach
+    half = _first(m).reach
     if chosen:
         half = _arrays.number("radius", 4.0 if radius is None else radius, 0.0)
-    shadow_map = m.shadow_map
-    shape, points, n = _receivers(shadow_map, receivers, normals)
+    maps = m.shadow_map
+    if isinstance(maps, MapSet):
+        maps._wide(half + bias[2])
+    shape, points, n = _receivers(maps, receivers, normals)
     result, flat = _result(out, shape, points.dtype)
-    wanted = _arrays.flag("full_output", full_output)
-    more = [np.empty((len(flat), m.channels), flat.dtype), np.empty_like(flat)] if wanted else None
-    _kernels.filtered(
-        shadow_map._chart(),
-        (m.moments, m._levels(), m.filter == "summed_area", m.reduce, m._range()),
-        points,
-        n,
-        asked,
-        bias,
-        half,
-        flat,
-        more,
-    )
-    if more is None:
+    results = [flat]
+    if _arrays.flag("full_output", full_output):
+        results += [np.empty((len(flat), m.channels), flat.dtype), np.empty_like(flat)]
+    _looked(m, points, n, asked, bias, half, results, [1.0, np.nan, np.nan])
+    if len(results) == 1:
         return result
-    return FilteredLookup(result, more[0].reshape(*shape, m.channels), more[1].reshape(shape))
+    return FilteredLookup(result, results[1].reshape(*shape, m.channels), results[2].reshape(shape))
 
 
 @overload
 def variance(
-    moment_map: MomentMap,
+    moment_map: MomentMap | MomentMapSet,
     receivers: ArrayLike,
     normals: ArrayLike | None = ...,
     *,
@@ -119,7 +141,7 @@ def variance(
 ) -> Floats: ...
 @overload
 def variance(
-    moment_map: MomentMap,
+    moment_map: MomentMap | MomentMapSet,
     receivers: ArrayLike,
     normals: ArrayLike | None = ...,
     *,
@@ -133,7 +155,7 @@ def variance(
     out: Floats | None = ...,
 ) -> FilteredLookup: ...
 def variance(
-    moment_map: MomentMap,
+    moment_map: MomentMap | MomentMapSet,
     receivers: ArrayLike,
     normals: ArrayLike | None = None,
     *,
@@ -150,8 +172,8 @@ def variance(
 
     Parameters
     ----------
-    moment_map : MomentMap
-        Of kind "variance".
+    moment_map : MomentMap or MomentMapSet
+        Of kind "variance"; of one map, of cascades or of a cube.
     receivers : array_like, shape (..., 3)
         Points in the world.
     normals : array_like, shape (..., 3), optional
@@ -211,13 +233,13 @@ def variance(
     array([0. , 0.5, 1. ])
     """
     m = _moment_map(moment_map, "variance")
-    granted = _bias(m, bias, slope_bias, normal_offset, light_bleeding)
+    granted = _bias(bias, slope_bias, normal_offset, light_bleeding)
     return _lookup(m, _asked(m, min_variance, "", None), granted, receivers, normals, radius, full_output, out)
 
 
 @overload
 def exponential_variance(
-    moment_map: MomentMap,
+    moment_map: MomentMap | MomentMapSet,
     receivers: ArrayLike,
     normals: ArrayLike | None = ...,
     *,
@@ -232,7 +254,7 @@ def exponential_variance(
 ) -> Floats: ...
 @overload
 def exponential_variance(
-    moment_map: MomentMap,
+    moment_map: MomentMap | MomentMapSet,
     receivers: ArrayLike,
     normals: ArrayLike | None = ...,
     *,
@@ -246,7 +268,7 @@ def exponential_variance(
     out: Floats | None = ...,
 ) -> FilteredLookup: ...
 def exponential_variance(
-    moment_map: MomentMap,
+    moment_map: MomentMap | MomentMapSet,
     receivers: ArrayLike,
     normals: ArrayLike | None = None,
     *,
@@ -263,7 +285,7 @@ def exponential_variance(
 
     Parameters
     ----------
-    moment_map : MomentMap
+    moment_map : MomentMap or MomentMapSet
         Of kind "exponential_variance", with one exponential (2 moments) or two (4).
     receivers, normals, radius, light_bleeding, bias, normal_offset, full_output, out
         As in `variance`.
@@ -305,13 +327,13 @@ def exponential_variance(
     array([0. , 0.5, 1. ])
     """
     m = _moment_map(moment_map, "exponential_variance")
-    granted = _bias(m, bias, slope_bias, normal_offset, light_bleeding)
+    granted = _bias(bias, slope_bias, normal_offset, light_bleeding)
     return _lookup(m, _asked(m, min_variance, "", None), granted, receivers, normals, radius, full_output, out)
 
 
 @overload
 def moment(
-    moment_map: MomentMap,
+    moment_map: MomentMap | MomentMapSet,
     receivers: ArrayLike,
     normals: ArrayLike | None = ...,
     *,
@@ -327,7 +349,7 @@ def moment(
 ) -> Floats: ...
 @overload
 def moment(
-    moment_map: MomentMap,
+    moment_map: MomentMap | MomentMapSet,
     receivers: ArrayLike,
     normals: ArrayLike | None = ...,
     *,
@@ -342,7 +364,7 @@ def moment(
     out: Floats | None = ...,
 ) -> FilteredLookup: ...
 def moment(
-    moment_map: MomentMap,
+    moment_map: MomentMap | MomentMapSet,
     receivers: ArrayLike,
     normals: ArrayLike | None = None,
     *,
@@ -360,7 +382,7 @@ def moment(
 
     Parameters
     ----------
-    moment_map : MomentMap
+    moment_map : MomentMap or MomentMapSet
         Of kind "moment".
     receivers, normals, radius, light_bleeding, bias, normal_offset, full_output, out
         As in `variance`.
@@ -407,5 +429,5 @@ def moment(
     array([0. , 0.5, 1. ])
     """
     m = _moment_map(moment_map, "moment")
-    granted = _bias(m, bias, slope_bias, normal_offset, light_bleeding)
+    granted = _bias(bias, slope_bias, normal_offset, light_bleeding)
     return _lookup(m, _asked(m, 0.0, method, moment_bias), granted, receivers, normals, radius, full_output, out)

@@ -9,11 +9,10 @@ from numpy.typing import ArrayLike
 
 from .. import _arrays
 from .._arrays import Floats
-from .._kernels import shadow as _kernels
 from ._lookup import _light_sides, _receivers, _result
 from .bounds import Method
-from .filtered import _LEAST, _asked, _bias
-from .moments import MomentMap
+from .filtered import _LEAST, _asked, _bias, _looked
+from .moments import MomentMap, MomentMapSet
 from .soft import PCSS
 
 __all__ = ["variance_soft"]
@@ -21,7 +20,7 @@ __all__ = ["variance_soft"]
 
 @overload
 def variance_soft(
-    moment_map: MomentMap,
+    moment_map: MomentMap | MomentMapSet,
     receivers: ArrayLike,
     normals: ArrayLike | None = ...,
     *,
@@ -39,7 +38,7 @@ def variance_soft(
 ) -> Floats: ...
 @overload
 def variance_soft(
-    moment_map: MomentMap,
+    moment_map: MomentMap | MomentMapSet,
     receivers: ArrayLike,
     normals: ArrayLike | None = ...,
     *,
@@ -56,7 +55,7 @@ def variance_soft(
     out: Floats | None = ...,
 ) -> PCSS: ...
 def variance_soft(
-    moment_map: MomentMap,
+    moment_map: MomentMap | MomentMapSet,
     receivers: ArrayLike,
     normals: ArrayLike | None = None,
     *,
@@ -76,7 +75,7 @@ def variance_soft(
 
     Parameters
     ----------
-    moment_map : MomentMap
+    moment_map : MomentMap or MomentMapSet
         With filter "mip" or "summed_area", of any kind but exponentials. Four moments tell the blockers' depth
         themselves; two, if what does not block lies at the receiver's depth.
     receivers, normals, light_size, full_output, out
@@ -130,7 +129,7 @@ def variance_soft(
     (array([0. , 0.5, 1. ]), array([0.4, 0.4, 0. ]))
     """
     m = moment_map
-    if not isinstance(m, MomentMap):
+    if not isinstance(m, MomentMap | MomentMapSet):
         raise TypeError(f"moment_map: expected a MomentMap, got {type(m).__name__}")
     if m.filter not in ("mip", "summed_area"):
         raise ValueError(f"moment_map: expected filter 'mip' or 'summed_area', got {m.filter!r}")
@@ -140,12 +139,11 @@ def variance_soft(
     sides = _light_sides(shadow_map, light_size)
     asked = _asked(m, min_variance, method, moment_bias)
     searched = _arrays.number("search_slope_bias", search_slope_bias, 0.0)
-    granted = _bias(m, bias, slope_bias, normal_offset, light_bleeding)
+    granted = _bias(bias, slope_bias, normal_offset, light_bleeding)
     shape, points, n = _receivers(shadow_map, receivers, normals)
     result, flat = _result(out, shape, points.dtype)
-    wanted = _arrays.flag("full_output", full_output)
-    more = [np.empty_like(flat) for _ in range(3)] if wanted else None
-    store = (m.moments, m._levels(), m.filter == "summed_area", m.reduce, m._range())
-    width = (*sides, searched)
-    _kernels.filtered(shadow_map._chart(), store, points, n, asked, granted, width, flat, more)
-    return result if more is None else PCSS(result, *(a.reshape(shape) for a in more))
+    results = [flat]
+    if _arrays.flag("full_output", full_output):
+        results += [np.empty_like(flat) for _ in range(3)]
+    _looked(m, points, n, asked, granted, (*sides, searched), results, [1.0, np.nan, 0.0, 0.0])
+    return PCSS(result, *(a.reshape(shape) for a in results[1:])) if len(results) > 1 else result

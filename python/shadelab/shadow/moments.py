@@ -4,16 +4,19 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass, replace
-from typing import Any, Literal, TypeAlias
+from typing import Any, Literal, TypeAlias, overload
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from .. import _arrays, image
 from .._kernels import shadow as _kernels
+from ._sets import MapSet
+from .cascaded import Cascades
+from .cubes import CubeShadowMap
 from .maps import ShadowMap, _finite
 
-__all__ = ["MomentMap", "moment_map"]
+__all__ = ["MomentMap", "MomentMapSet", "moment_map"]
 
 Kind: TypeAlias = Literal["variance", "exponential_variance", "moment"]
 Filter: TypeAlias = Literal["none", "gaussian", "mip", "summed_area"]
@@ -89,13 +92,75 @@ class MomentMap:
         return _range(self.near, self.far)
 
 
+@dataclass(frozen=True, eq=False)
+class MomentMapSet:
+    """Moments of each of several maps: what `moment_map` gives of cascades and cubes, and looked up as they are.
+
+    Parameters
+    ----------
+    shadow_map : Cascades or CubeShadowMap
+        The set that the moments were taken of.
+    maps : tuple of MomentMap
+        Those of each of its maps, in order, of one kind and filter.
+    """
+
+    shadow_map: MapSet
+    maps: tuple[MomentMap, ...]
+
+    @property
+    def kind(self) -> Kind:
+        """As of each `MomentMap`."""
+        return self.maps[0].kind
+
+    @property
+    def filter(self) -> Filter:
+        """As of each `MomentMap`."""
+        return self.maps[0].filter
+
+    @property
+    def channels(self) -> int:
+        """Numbers in a texel."""
+        return self.maps[0].channels
+
+    @property
+    def bytes(self) -> int:
+        """What the moments of all maps occupy."""
+        return sum(m.bytes for m in self.maps)
+
+
 def _range(near: float, far: float) -> list[float]:
     """The middle, and what depth is multiplied by."""
     return [(near + far) / 2, 2.0 / (far - near)]
 
 
+@overload
 def moment_map(
     shadow_map: ShadowMap,
+    kind: Kind = ...,
+    *,
+    filter: Filter = ...,
+    sigma: float | None = ...,
+    reduce: int = ...,
+    exponents: tuple[float, float] | float | None = ...,
+    bits: Literal[16, None] = ...,
+    precision: Literal["double", "compensated", "single"] | None = ...,
+    receivers: ArrayLike | None = ...,
+) -> MomentMap: ...
+@overload
+def moment_map(
+    shadow_map: Cascades | CubeShadowMap,
+    kind: Kind = ...,
+    *,
+    filter: Filter = ...,
+    sigma: float | None = ...,
+    reduce: int = ...,
+    exponents: tuple[float, float] | float | None = ...,
+    bits: Literal[16, None] = ...,
+    precision: Literal["double", "compensated", "single"] | None = ...,
+    receivers: ArrayLike | None = ...,
+) -> MomentMapSet: ...
+def moment_map(
+    shadow_map: ShadowMap | Cascades | CubeShadowMap,
     kind: Kind = "moment",
     *,
     filter: Filter = "gaussian",
@@ -105,13 +170,14 @@ def moment_map(
     bits: Literal[16, None] = None,
     precision: Literal["double", "compensated", "single"] | None = None,
     receivers: ArrayLike | None = None,
-) -> MomentMap:
+) -> MomentMap | MomentMapSet:
     """Take moments of a shadow map's depths, and filter them beforehand.
 
     Parameters
     ----------
-    shadow_map : ShadowMap
-        The depths; their precision is that of moments.
+    shadow_map : ShadowMap, Cascades or CubeShadowMap
+        The depths; their precision is that of moments. Each map of a set is filtered for itself, so that its border
+        should hold the filter.
     kind : {"variance", "exponential_variance", "moment"}
         What is averaged: depth and its square; exponentials of it and their squares; its first four powers.
     filter : {"none", "gaussian", "mip", "summed_area"}
@@ -138,7 +204,7 @@ def moment_map(
 
     Returns
     -------
-    MomentMap
+    MomentMap, or MomentMapSet of a set
 
     Raises
     ------
@@ -167,8 +233,12 @@ def moment_map(
     >>> moment_map(above, filter="none", reduce=8).moments
     array([[[0., 1., 0., 1.]]])
     """
+    if isinstance(shadow_map, Cascades | CubeShadowMap):
+        knobs: dict[str, Any] = {"filter": filter, "sigma": sigma, "reduce": reduce, "exponents": exponents}
+        knobs |= {"bits": bits, "precision": precision, "receivers": receivers}
+        return MomentMapSet(shadow_map, tuple(moment_map(m, kind, **knobs) for m in shadow_map.maps))
     if not isinstance(shadow_map, ShadowMap):
-        raise TypeError(f"shadow_map: expected a ShadowMap, got {type(shadow_map).__name__}")
+        raise TypeError(f"shadow_map: expected a ShadowMap, Cascades or a cube, got {type(shadow_map).__name__}")
     _arrays.choice("kind", kind, _KINDS)
     _arrays.choice("filter", filter, _FILTERS)
     for name, value, goes in (
@@ -202,10 +272,11 @@ def moment_map(
     height, width = (-(-n // square) for n in depth.shape)
     moments: NDArray[Any] = np.empty((height, width, channels), dtype)
     _kernels.moment_map(depth, (kind, own), _range(near, far), square, moments)
-    reach = 0.5 * square
+    # Between four texels, one is reached to each side.
+    reach = 1.0 * square
     if filter == "gaussian":
         moments = image.gaussian_filter(moments, wide / square, truncate=3.0)
-        reach += 2.0 * wide
+        reach = 0.5 * square + 2.0 * wide
     elif filter == "summed_area":
         moments = image.summed_area_table(moments, precision=sums)
         if not np.isfinite(moments[-1, -1]).all():

@@ -30,7 +30,7 @@ def _constant(dtype: np.dtype, kind: Any, knobs: dict[str, Any]) -> Measurement:
         for filter in _FILTERS:
             if filter == "summed_area" and knobs:
                 continue
-            filtered = shadow.moment_map(m, kind, filter=filter, **knobs)  # type: ignore[arg-type]
+            filtered = shadow.moment_map(m, kind, filter=filter, **knobs)  # type: ignore[call-overload]
             lit = getattr(shadow, kind)(filtered, points, [0.0, 1.0, 0.0])
             dark += int((~(lit > 0.99)).sum())
             cases += lit.size
