@@ -244,3 +244,13 @@ def test_a_picture_has_the_hits_of_a_list(shape):
 def test_unknown_methods_are_named():
     with pytest.raises(ValueError, match="method: expected one of"):
         sl.accel.BVH(np.eye(3), [[0, 1, 2]], method="best")
+
+
+def test_results_that_share_memory_are_refused():
+    p, f = soup(np.random.default_rng(1), 20, np.float32)
+    bvh = sl.accel.BVH(p, f)
+    buffer = bytearray(400)
+    t, u = (np.frombuffer(buffer, np.float32) for _ in range(2))
+    out = sl.accel.Hit(t, np.zeros(100, np.int32), u, np.zeros(100, np.float32))
+    with pytest.raises(ValueError, match=r"out\.t: shares memory with out\.u"):
+        bvh.closest_hit(np.zeros((100, 3), np.float32), [0, 0, 1], out=out)

@@ -128,3 +128,18 @@ def test_errors_name_the_argument():
     ):
         with pytest.raises(kind, match=name):
             sl.shadow.cube_shadow_map(p, f, **{"light": PointLight((0, 0, 0)), "resolution": 64} | wrong)
+
+
+@pytest.mark.parametrize("dtype", [np.float32, np.float64])
+def test_seams_do_not_leak_without_a_border(dtype):
+    """A light inside a closed box inside a room: receivers where two faces meet round to either side."""
+    walls_, shell = sl.mesh.box((4.0, 4, 4)), sl.mesh.box((0.5, 0.5, 0.5))
+    place = np.array([0.1, 0.2, 0.3])
+    p = np.concatenate([walls_.positions, shell.positions + place]).astype(dtype)
+    cube = sl.shadow.cube_shadow_map(
+        p, np.concatenate([walls_.faces, shell.faces + len(walls_.positions)]), PointLight(tuple(place)), 64, border=0
+    )
+    rng = np.random.default_rng(3)
+    away = rng.uniform(-1.5, 1.5, (20_000, 3))
+    away[:, 0] = np.abs(away[:, 1]) * rng.choice([-1, 1], 20_000)
+    assert sl.shadow.hard(cube, (place + away).astype(dtype)).max() == 0.0

@@ -175,3 +175,51 @@ def test_maps_that_are_none_are_refused():
     ):
         with pytest.raises(ValueError, match=name):
             made(**wrong)
+
+
+@pytest.mark.parametrize("kind", ["sun", "point"])
+def test_a_map_for_receivers_reaches_as_far_as_penumbrae_that_are_asked_for(kind):
+    """Half of a broad light is hidden at the foot of a wall's shadow, by what stands far aside of the receivers."""
+    p = [[-50, 0, -50], [50, 0, -50], [50, 0, 50], [-50, 0, 50], [-50, 20, -50], [0, 20, -50], [0, 20, 50]]
+    mesh = np.array([*p, [-50, 20, 50]], float), [[0, 2, 1], [0, 3, 2], [4, 6, 5], [4, 7, 6]]
+    light, wide = {
+        "sun": (sl.light.DirectionalLight((0, -1, 0)), 0.2),
+        "point": (sl.light.PointLight((0, 40, 0)), 4.0),
+    }[kind]
+    x = np.linspace(0.05, 2, 40)
+    points = np.concatenate([np.stack([x, 0 * x, z + 0 * x], -1) for z in (0.0, 2.0)])
+
+    def lit(m):
+        return sl.shadow.pcss(m, points, [0, 1, 0], light_size=wide, blocker_samples=256, filter_samples=256)
+
+    whole = lit(sl.shadow.shadow_map(*mesh, light, 2048))
+    assert 0.4 < whole[0] < 0.6
+    fitted = sl.shadow.shadow_map(*mesh, light, 2048, receivers=points, light_size=wide)
+    # Sixteen samples a side and texels of either map.
+    assert np.abs(lit(fitted) - whole).max() < 0.08
+    with pytest.raises(ValueError, match="light_size"):
+        lit(sl.shadow.shadow_map(*mesh, light, 2048, receivers=points))
+    with pytest.raises(ValueError, match="light_size"):
+        sl.shadow.shadow_map(*mesh, light, 64, receivers=points, light_size=-1.0)
+
+
+def test_mirrored_frames_negative_depths_and_biases_are_refused():
+    frame = np.array([[1.0, 0, 0], [0, 0, -1], [0, -1, 0]])
+    window = [-1, 1, -1, 1]
+    m = sl.shadow.ShadowMap(np.ones((4, 4)), "perspective", [0, 1, 0], frame, window, 1.0, 1.0)
+    with pytest.raises(ValueError, match="frame"):
+        sl.shadow.ShadowMap(np.ones((4, 4)), "perspective", [0, 1, 0], -frame, window, 1.0, 1.0)
+    with pytest.raises(ValueError, match="depth"):
+        sl.shadow.ShadowMap(-np.ones((4, 4)), "perspective", [0, 1, 0], frame, window, 1.0, 1.0)
+    with pytest.raises(ValueError, match="bias"):
+        sl.shadow.hard(m, [[0.0, 0, 0]], bias=-1.0)
+
+
+def test_a_polygons_map_stands_at_its_centroid():
+    """Corners along an edge move nothing."""
+    square = [[-1.0, 4, -1], [-1, 4, 1], [1, 4, 1], [1, 4, -1]]
+    edge = np.linspace([-1.0, 4, -1], [-1, 4, 1], 61)[:-1].tolist()
+    mesh = [[-5.0, 0, -5], [5, 0, -5], [5, 0, 5]], [[0, 2, 1]]
+    for corners in (square, edge + square[1:], square[::-1]):
+        m = sl.shadow.shadow_map(*mesh, sl.light.PolygonLight(corners), 8)
+        assert np.abs(m.position - [0, 4, 0]).max() < 1e-5

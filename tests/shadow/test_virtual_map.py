@@ -180,3 +180,17 @@ def test_errors_name_the_argument():
         given = {"light": LIGHTS["sun"], "receivers": patch(5), "resolution": 256, "page": 64} | wrong
         with pytest.raises(kind, match=name):
             sl.shadow.virtual_shadow_map(p, f, **given)
+
+
+def test_the_last_texel_has_its_page():
+    ground, roof = sl.mesh.plane((40.0, 40.0)), sl.mesh.box((30.0, 0.1, 30.0))
+    p = np.concatenate([ground.positions, roof.positions + np.array([0, 2, 0])])
+    f = np.concatenate([ground.faces, roof.faces + len(ground.positions)])
+    light = sl.light.SpotLight((0, 6, 0), (0, -1, 0), (1, 1, 1), 0.5, 0.8)
+    whole = sl.shadow.shadow_map(p, f, light, 512)
+    left, right = whole.window[:2]
+    # Half a texel before the map's last border, where nothing but the last column is asked for.
+    points = np.array([[-6 * (left + 511.5 / 512 * (right - left)), 0, 0.37]])
+    large = sl.shadow.virtual_shadow_map(p, f, light, points, 512, page=64, border=0)
+    assert large.hit_rate(points) == 1.0
+    assert sl.shadow.hard(large, points, UP) == sl.shadow.hard(whole, points, UP) == 0.0

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable
+from itertools import combinations
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -120,6 +121,11 @@ def hit_arrays(shape: tuple[int, ...], dtype: np.dtype[Any], normals: bool, out:
     t, u, v = (_arrays.output(f"out.{n}", getattr(given, n), shape, dtype) for n in "tuv")
     face = _arrays.output("out.face", given.face, shape, np.int32)
     normal = _arrays.output("out.normal", given.normal, (*shape, 3), dtype) if normals else None
+    if out is not None:
+        named = {"t": t, "face": face, "u": u, "v": v} | ({} if normal is None else {"normal": normal})
+        for (a, x), (b, y) in combinations(named.items(), 2):
+            if np.may_share_memory(x, y):
+                raise ValueError(f"out.{a}: shares memory with out.{b}")
     return Hit(t, face, u, v, normal)
 
 

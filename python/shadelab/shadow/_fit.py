@@ -132,8 +132,9 @@ def _fit_orthographic(
     origin: NDArray[np.float64],
     frame: NDArray[np.float64],
     receivers: Floats | None,
+    sides: tuple[float, float] = (0.0, 0.0),
 ) -> tuple[NDArray[np.float64], NDArray[np.float64], float, float]:
-    """The origin moved before everything, the window, and the depths to draw between."""
+    """The origin moved before everything, the window, and the depths to draw between; `sides` are angles."""
     whole = _span(used, origin, frame)
     if whole is None:
         return origin, np.array([-1.0, 1, -1, 1]), 0.0, 1.0
@@ -141,7 +142,9 @@ def _fit_orthographic(
     margin = max((high - low) * 0.01, 1e-6 * max(abs(low), abs(high), float(np.abs(window).max())), 1e-30)
     around = None if receivers is None else _span(receivers, origin, frame)
     if around is not None:
-        window = _common(window, around[0])
+        # As of a perspective map: blockers as near the light as any may hide it.
+        reach = np.tan(np.asarray(sides) / 2.0) * max(around[2] - low, 0.0)
+        window = _common(window, around[0] + np.array([-1, 1, -1, 1]) * np.repeat(reach, 2))
     # One margin before the nearest, one behind the farthest caster.
     moved = origin + frame[2] * (low - 2 * margin)
     return moved, window, margin, high - low + 3 * margin

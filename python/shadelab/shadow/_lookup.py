@@ -29,7 +29,7 @@ def _granted(
     normals: ArrayLike | None, bias: float, slope_bias: float, normal_offset: float, receiver_plane: bool
 ) -> tuple[float, float, float, bool]:
     return (
-        _arrays.number("bias", bias),
+        _arrays.number("bias", bias, 0.0),
         _arrays.number("slope_bias", slope_bias, 0.0),
         _arrays.number("normal_offset", normal_offset, 0.0),
         _arrays.flag("receiver_plane", receiver_plane) and normals is not None,
@@ -41,6 +41,9 @@ def _light_sides(maps: ShadowMap | MapSet, light_size: float | tuple[float, floa
     sides = maps.light_size if light_size is None else _sides("light_size", light_size)
     if light_size is None and max(sides) == 0.0:
         raise ValueError("light_size: the map's light has no extent, so its width must be given")
+    if isinstance(maps, ShadowMap) and (sides[0] > maps.widest[0] or sides[1] > maps.widest[1]):
+        fitted = f"the map was fitted to receivers under a light of at most {maps.widest}"
+        raise ValueError(f"light_size: {fitted}, got {sides}; draw it with this light_size")
     if maps.projection != "orthographic":
         return sides
     if max(sides) >= math.pi:

@@ -78,9 +78,12 @@ def half_plane(
     edges = _arrays.vectors("occluders", occluders, 3, np.float64)
     if edges.shape[-2:] != (3, 3) or edges.ndim > 3:
         raise ValueError(f"occluders: expected shape (k, 3, 3), got {edges.shape}")
-    edges = edges.reshape(-1, 3, 3)
+    edges = edges.reshape(-1, 3, 3).copy()
     if not np.isfinite(edges).all():
         raise ValueError("occluders: expected finite numbers")
+    # Directions of any length: squares of the largest and least are out of range.
+    longest = np.abs(edges[:, 1:]).max(-1, keepdims=True)
+    edges[:, 1:] /= np.where(longest > 0.0, longest, 1.0)
     lengths = np.linalg.norm(edges[:, 1:], axis=-1).prod(-1)
     flat = ~(np.linalg.norm(np.cross(edges[:, 1], edges[:, 2]), axis=-1) > 1e-9 * lengths)
     if flat.any():

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Any, Literal, NamedTuple, TypeAlias
 
 import numpy as np
@@ -56,12 +56,15 @@ class ShadowMap:
         The precision of lookups where depth is stored as integers; otherwise that of `depth`.
     rounding : float
         World units of depth that drawing may have rounded off, which lookups grant to receivers.
+    widest : (float, float)
+        The widest light that `pcss` may take it for: of a map that was fitted to receivers, what it reaches aside for.
 
     Raises
     ------
     TypeError, ValueError
         If an argument has the wrong type or shape, a texel is NaN, the frame's rows are not unit vectors square to each
-        other, the window has no extent, or depths are out of order (or negative in a perspective map).
+        other and as a light sees them (up is right × axis), the window has no extent, `near` lies beyond `far`, or a
+        depth of a perspective map is negative.
     """
 
     depth: NDArray[Any]
@@ -75,6 +78,7 @@ class ShadowMap:
     bits: Bits = None
     dtype: np.dtype[Any] = np.dtype(np.float32)  # noqa: RUF009
     rounding: float = 0.0
+    widest: tuple[float, float] = (math.inf, math.inf)
 
     def __post_init__(self) -> None:
         def fix(name: str, value: Any) -> None:
@@ -85,6 +89,8 @@ class ShadowMap:
             raise ValueError(f"depth: expected shape (H, W), neither zero, got {depth.shape}")
         if np.isnan(depth.min()):
             raise ValueError("depth: expected numbers or infinity, got NaN")
+        if self.bits is None and self.projection == "perspective" and depth.min() < 0.0:
+            raise ValueError(f"depth: expected none below 0 in a perspective map, got {float(depth.min()):g}")
         fix("depth", depth)
         fix("dtype", depth.dtype if self.bits is None else _arrays.precision("dtype", self.dtype))
         _arrays.choice("projection", self.projection, ("perspective", "orthographic"))
@@ -96,6 +102,10 @@ class ShadowMap:
         # Frames are rounded to the precision of maps.
         if np.abs(self.frame @ self.frame.T - np.eye(3)).max() > 1e-4:
             raise ValueError(f"frame: expected unit vectors square to each other, got {self.frame.tolist()}")
+        if np.linalg.det(self.frame) > 0.0:
+            raise ValueError(
+                f"frame: expected right, up = right x axis, axis, got a mirrored one, {self.frame.tolist()}"
+            )
         left, right, bottom, top = self.window
         if not (left < right and bottom < top):
             raise ValueError(f"window: expected left < right and bottom < top, got {self.window.tolist()}")
@@ -104,6 +114,7 @@ class ShadowMap:
         fix("near", _arrays.number("near", self.near, low))
         fix("far", _arrays.number("far", self.far, self.near))
         fix("light_size", _sides("light_size", self.light_size))
+        fix("widest", tuple(w if w == math.inf else _arrays.number("widest", w, 0.0) for w in self.widest))
         fix("rounding", _arrays.number("rounding", self.rounding, 0.0))
 
     @property
@@ -208,6 +219,7 @@ def shadow_map(
     resolution: int | tuple[int, int] = 1024,
     *,
     receivers: ArrayLike | None = None,
+    light_size: float | tuple[float, float] | None = None,
     cull: Cull = "none",
     surface: Surface = "first",
     bits: Bits = None,
@@ -232,7 +244,11 @@ def shadow_map(
     receivers : array_like, shape (..., 3), optional
         Points that will be looked up. The map is then fitted to what lies between them and the light, which gives
         finer texels where a large scene casts onto a small view. Those that are not finite do not count; an empty
-        batch asks for nothing, and the map is fitted to the mesh.
+        batch asks for nothing, and the map is fitted to the mesh. `pcss` finds all that it looks for; a `pcf` that is
+        wider than two texels takes what lies farther out for lit.
+    light_size : float or (float, float), optional
+        The width that `pcss` will take the light for, where it is more than the light's own: with `receivers` the map
+        then reaches as far aside as penumbrae ask. As there, an angle for directional light.
     cull : {"none", "back", "front"}
         Faces that are dropped. "front" keeps what faces away from the light: less acne, more leaks.
     surface : {"first", "second", "midpoint"}
@@ -243,7 +259,7 @@ def shadow_map(
     snap : bool
         Of directional light: texels lie at whole multiples of their size, which is one of 8 to an octave, in a frame
         that depends on the mesh and the light alone. Receivers that move then shift the map by whole texels, and
-        edges of shadows stay where they are. Costs up to an eighth of the resolution.
+        edges of shadows stay where they are. Costs up to an eighth of the resolution, of more than 8 texels a side.
     progress : bool or callable, optional
         True shows a bar; a callable gets (done, total).
 
@@ -288,11 +304,18 @@ def shadow_map(
     how = _how(surface, bits)
     whole = _arrays.flag("snap", snap)
     looked_up = None if receivers is None else _finite("receivers", receivers)
+    wide = (0.0, 0.0) if light_size is None else _sides("light_size", light_size)
+    if isinstance(light, DirectionalLight) and max(wide) >= math.pi:
+        raise ValueError(f"light_size: expected an angle below pi, got {max(wide):g}")
 
     if whole and not isinstance(light, DirectionalLight):
         raise ValueError(f"snap: expected directional light for whole texels, got {type(light).__name__}")
-    seen, sides = _fitted(points, triangles, light, size, looked_up, whole)
-    return _drawn(points, triangles, seen, size, cull, how, sides, _arrays.progress_callback(progress, "shadow map"))
+    if whole and min(size) <= 8:
+        raise ValueError(f"snap: expected a resolution above 8 for whole texels, got {min(size)}")
+    seen, sides = _fitted(points, triangles, light, size, looked_up, whole, wide)
+    drawn = _drawn(points, triangles, seen, size, cull, how, sides, _arrays.progress_callback(progress, "shadow map"))
+    fitted = looked_up is not None and looked_up.size > 0
+    return replace(drawn, widest=_widest(sides, wide)) if fitted else drawn
 
 
 class _View(NamedTuple):
@@ -313,6 +336,7 @@ def _fitted(
     size: tuple[int, int],
     looked_up: Floats | None,
     snap: bool = False,
+    wide: tuple[float, float] = (0.0, 0.0),
 ) -> tuple[_View, tuple[float, float]]:
     """What the one map of a light looks at, and the light's sides."""
     perspective, origin, frame, sides = _light_frame(light, points, None if snap else looked_up)
@@ -320,19 +344,24 @@ def _fitted(
     origin, frame = (_rounded(a, points.dtype) for a in (origin, frame))
     used = _used(points, triangles)
     if perspective:
-        window, near, far = _fit_perspective(used, points, triangles, origin, frame, looked_up, sides)
+        reaching = _widest(sides, wide)
+        window, near, far = _fit_perspective(used, points, triangles, origin, frame, looked_up, reaching)
         if isinstance(light, SpotLight) and light.outer_angle < math.pi / 2:
             cone = math.tan(light.outer_angle)
             window = np.clip(window, -cone, cone)
     else:
-        origin, window, near, far = _fit_orthographic(used, origin, frame, looked_up)
+        origin, window, near, far = _fit_orthographic(used, origin, frame, looked_up, wide)
         origin = _rounded(origin, points.dtype)
-    if snap and min(size) > 8:
+    if snap:
         middle = np.array([window[0] + window[1], window[2] + window[3]]) / 2.0
         window = _snapped(middle, float(max(np.ptp(window[:2]), np.ptp(window[2:]), 1e-30)), size, 2.0, 8)
     else:
         window = _grow(window, size)
     return _View(perspective, origin, frame, _rounded(window, points.dtype), near, far), sides
+
+
+def _widest(a: tuple[float, float], b: tuple[float, float]) -> tuple[float, float]:
+    return max(a[0], b[0]), max(a[1], b[1])
 
 
 def _drawn(

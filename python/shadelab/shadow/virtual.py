@@ -210,11 +210,12 @@ def virtual_shadow_map(
 
     Notes
     -----
-    Where a page is there, its texels are those of the whole map of its level to the bit (of the finest level, those of
-    ``shadow_map(positions, faces, light, resolution)``; others have its window): triangles go through the same
-    arithmetic, and only the tiles of pages are drawn. Where it is not, receivers look into the next coarser level that
-    has one, and are lit if none has. Memory is that of pages, 4 or 8 bytes a texel. Cost: for each level that is asked
-    for, one pass over all vertices and triangles.
+    Where a page is there, its texels are those of the whole map of its level to the bit (of the finest level, those
+    of ``shadow_map(positions, faces, light, resolution)``; others have its window): triangles go through the same
+    arithmetic, and only the tiles of pages are drawn. Where it is not, receivers look into the next coarser level
+    that has one, and are lit if none has. `pcss` searches from the least depth that pages hold: what stands nearer
+    to the light and casts onto none of them widens its search in the whole map alone. Memory is that of pages, 4 or
+    8 bytes a texel. Cost: for each level that is asked for, one pass over all vertices and triangles.
 
     References
     ----------
