@@ -67,7 +67,7 @@ pub fn triangulate(corners: &[Vec3<f64>]) -> Option<Vec<[usize; 3]>> {
 }
 
 impl<T: Real> PolygonLight<T> {
-    /// None for a polygon that crosses itself.
+    /// None for a polygon that crosses itself, or touches itself so that its triangles overlap.
     pub fn new(corners: &[Vec3<f64>], radiance: Vec3<T>, two_sided: bool) -> Option<Self> {
         let rounded = |v: Vec3<f64>| v.map(T::of);
         let mut area = 0.0;
@@ -79,7 +79,11 @@ impl<T: Real> PolygonLight<T> {
                 (t.map(rounded), T::of(area))
             })
             .collect();
-        let normal = rounded(twice_area(corners).normalize());
+        let whole = twice_area(corners);
+        if area > 0.5 * whole.length() * (1.0 + 1e-9) {
+            return None;
+        }
+        let normal = rounded(whole.normalize());
         let plane = Plane { point: rounded(corners[0]), normal, area: T::of(area), two_sided };
         Some(PolygonLight { plane, corners: corners.into(), triangles, radiance })
     }

@@ -115,7 +115,9 @@ impl<T: Real> Receiver<T> {
         desk: &mut Desk<S>,
     ) -> Vec3<T> {
         if light.has_area() {
-            if let (Light::Textured(_), Mirrors::Sampled { digits, seed }) = (light, mirrors) {
+            if let (Light::Textured(_), Mirrors::Sampled { digits, seed }) = (light, mirrors)
+                && !digits.is_empty()
+            {
                 return self.sampled(light, stream, seed, digits, true);
             }
             let mirrored = match mirrors {

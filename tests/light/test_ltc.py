@@ -180,3 +180,24 @@ if __name__ == "__main__" and sys.argv[1:] == ["fit"]:
     rows = L.fit_ltc(progress=True)._lobes()[0]
     text = "".join(" ".join(str(x) for x in row) + "\n" for row in rows)
     (Path(__file__).parents[2] / "src/light/ltc/table_data.txt").write_text(text)
+
+
+def test_tables_that_are_none_are_refused():
+    def table(rows, columns, **changes):
+        parts = {
+            "inverse": np.ones((rows, columns, 2, 3, 3)),
+            "magnitude": np.ones((rows, columns, 2)),
+            "grazing": np.ones((rows, columns, 2)),
+            "distance": np.ones((rows, columns)),
+        }
+        return sl.light.LtcTable(**(parts | changes))
+
+    assert table(2, 2).magnitude.dtype == np.float32
+    for rows, columns in [(0, 0), (1, 1), (2, 0), (4, 1)]:
+        with pytest.raises(ValueError, match="magnitude"):
+            table(rows, columns)
+    for name in ("inverse", "magnitude", "grazing"):
+        with pytest.raises(ValueError, match=name):
+            table(2, 3, **{name: np.full((2, 3, 2, 3, 3)[: 5 if name == "inverse" else 3], np.nan)})
+    with pytest.raises(ValueError, match="distance"):
+        table(2, 3, distance=np.ones(3))

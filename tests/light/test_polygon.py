@@ -109,3 +109,27 @@ def test_nan_stays_in_its_row():
     assert np.isnan(got[0]) and got[1] > 1
     with pytest.raises(ValueError, match="corners: expected shape"):
         sl.light.polygon_irradiance(SQUARE[:2], [0, 0, 0], [0, 1, 0])
+
+
+@pytest.mark.parametrize(
+    "flat",
+    [
+        [(0, 0), (1, 1), (2, 0), (2, 2), (1, 1), (0, 2)],
+        [(0, 0), (2, 0), (2, 2), (1, 2), (1, 3), (1, 2), (0, 2)],
+        [(0, 0), (2, 2), (2, 0), (1, 1), (0, 3)],
+        [(0, 0), (1, 0), (2, 0), (1, 0), (1, 1), (0, 1)],
+    ],
+)
+def test_what_is_drawn_of_a_polygon_is_what_it_is_or_it_is_refused(flat):
+    """Corners that touch edges: the triangles that are drawn from cover the polygon once, or there are none."""
+    try:
+        light = sl.light.PolygonLight([[x, 2.0, z] for x, z in flat], (1, 1, 1), two_sided=True)
+        point, up = np.array([0.7, 0, 0.4]), np.array([0.0, 1, 0])
+        exact = sl.light.irradiance(light, point, up)
+    except ValueError as error:
+        assert "corners" in str(error)
+        return
+    u = sl.sampling.sobol(4096, 2, scramble="owen", seed=3)
+    drawn = sl.light.light_sample(light, np.broadcast_to(point, (4096, 3)), u)
+    found = (drawn.radiance * (drawn.wi @ up / drawn.pdf)[:, None]).mean(0)
+    assert np.abs(found / exact - 1).max() < 0.01

@@ -25,7 +25,7 @@ def test_known_ones(dtype):
         (solid_angle("sphere", o, [0, 0.5, 0], 1.0), 4 * np.pi),
         (solid_angle("box", o, [-1, -1, -1], [1, 1, 1]), 4 * np.pi),
         (solid_angle("box", o, [1, -1, -1], [3, 1, 1]), 4 * np.pi / 6),
-        (solid_angle("box", o, [0, 0, 0], [1, 1, 1]), 0.0),
+        (solid_angle("box", o, [0, 0, 0], [1, 1, 1]), 4 * np.pi / 8),
         (solid_angle("polygon", o, [[-1, -1, 1], [1, -1, 1], [1, 1, 1], [-1, 1, 1]]), 4 * np.pi / 6),
     ):
         # Seen from a box's own corner its three far faces are not seen; the limit from without is none.
@@ -90,3 +90,19 @@ def test_bad_elements_and_arguments():
         solid_angle("cone", [0.0, 0, 0])
     with pytest.raises(ValueError, match="parameters: expected center, radius of a sphere, got 1 arrays"):
         solid_angle("sphere", [0.0, 0, 0], [0, 0, 1])
+
+
+@pytest.mark.parametrize("dtype", [np.float32, np.float64])
+def test_on_a_shape_what_lies_before_it_is_half_of_everything(dtype):
+    def of(kind, points, *shape):
+        return solid_angle(kind, np.array(points, dtype), *shape) / np.pi
+
+    # Within, on the diagonal of its triangles, beside, and before its edge's line.
+    places = [[0, 0, 0], [0.2, 0.2, 0], [0.2, -0.3, 0], [0.6, 0, 0], [3, 0.5, 0]]
+    assert np.array_equal(of("rectangle", places, [0, 0, 0], [1, 0, 0], [0, 1, 0]), [2, 2, 2, 0, 0])
+    corner = np.array([[0, 0, 0], [2, 0, 0], [2, 1, 0], [1, 1, 0], [1, 2, 0], [0, 2, 0.0]])
+    for k in range(6):
+        found = of("polygon", [[0.5, 0.5, 0], [0.5, 1.5, 0], [1.5, 1.5, 0], [-1, 1, 0]], np.roll(corner, k, 0))
+        assert np.array_equal(found, [2, 2, 0, 0])
+    on = of("box", [[0, 0.1, 0.2], [0, 1, 0.2], [0, 1, 1], [0.5, 0.1, 0.2]], [0, -1, -1], [2, 1, 1])
+    assert np.array_equal(on, [2, 1, 0.5, 4])

@@ -224,3 +224,12 @@ def test_pictures_that_no_light_can_show_are_refused():
     one, other = made(picture(2, 2)), made(picture(2, 2, 1))
     assert one != other and one == made(picture(2, 2)) and len({one, other}) == 2
     assert not one.texture.flags.writeable
+
+
+def test_without_samples_the_diffuse_part_is_left():
+    plain = sl.light.RectLight((0, 2, 0), (1, 0, 0), (0, 0, 1), (4, 4, 4))
+    shown = sl.light.RectLight((0, 2, 0), (1, 0, 0), (0, 0, 1), (4, 4, 4), texture=np.ones((2, 2)))
+    given = ([0.3, 0, 0], [0.0, 1, 0], [0.5] * 3)
+    expected, found = (sl.light.unshadowed(light, *given, wo=[0.0, 1, 0], samples=0) for light in (plain, shown))
+    assert expected.min() > 0.1
+    assert np.abs(found / expected - 1).max() < 1e-5

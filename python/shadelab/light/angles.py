@@ -40,7 +40,8 @@ def solid_angle(shape: Shape, points: ArrayLike, *parameters: ArrayLike) -> Floa
     Returns
     -------
     ndarray, shape (...)
-        In steradian. In the plane of a flat shape 0 beside it and 2π within it; 4π within a sphere or box.
+        In steradian. In the plane of a flat shape 0 beside it and 2π within it; 4π within a sphere
+        or box, and of a box half of it on a face, a quarter on an edge, an eighth on a corner.
 
     Raises
     ------

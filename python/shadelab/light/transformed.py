@@ -46,6 +46,20 @@ class LtcTable:
     grazing: NDArray[np.float32]
     distance: NDArray[np.float64]
 
+    def __post_init__(self) -> None:
+        shape = np.shape(self.magnitude)[:2]
+        if len(shape) != 2 or min(shape) < 2:
+            raise ValueError(f"magnitude: expected shape (R, A, 2) of two rows and columns at least, got {shape}")
+        for name, more in (("inverse", (2, 3, 3)), ("magnitude", (2,)), ("grazing", (2,))):
+            value = _arrays.floats(name, getattr(self, name), np.float32)
+            if value.shape != shape + more or not np.isfinite(value).all():
+                raise ValueError(f"{name}: expected shape {shape + more} of finite numbers, got {value.shape}")
+            object.__setattr__(self, name, value)
+        distance = _arrays.floats("distance", self.distance, np.float64)
+        if distance.shape != shape:
+            raise ValueError(f"distance: expected shape {shape}, got {distance.shape}")
+        object.__setattr__(self, "distance", distance)
+
     @classmethod
     def _of(cls, lobes: NDArray[np.float32], distance: NDArray[np.float64]) -> LtcTable:
         rows, angles = distance.shape
