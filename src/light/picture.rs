@@ -18,6 +18,7 @@ use crate::sampling::tabulated::Tabulated2D;
 use crate::vec::Vec3;
 
 /// The largest picture, texels a side.
+#[cfg_attr(not(feature = "python"), allow(dead_code))] // arrays come from Python alone
 pub const MOST: usize = 2048;
 
 /// Cells along an axis: at least, at most, and the step of the hyperbolic sine that places their borders.

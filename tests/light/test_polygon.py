@@ -131,5 +131,6 @@ def test_what_is_drawn_of_a_polygon_is_what_it_is_or_it_is_refused(flat):
         return
     u = sl.sampling.sobol(4096, 2, scramble="owen", seed=3)
     drawn = sl.light.light_sample(light, np.broadcast_to(point, (4096, 3)), u)
-    found = (drawn.radiance * (drawn.wi @ up / drawn.pdf)[:, None]).mean(0)
+    shines = drawn.pdf > 0
+    found = (drawn.wi @ up)[shines] @ (1 / drawn.pdf[shines]) / len(u)
     assert np.abs(found / exact - 1).max() < 0.01

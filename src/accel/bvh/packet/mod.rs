@@ -7,16 +7,18 @@
 //! I. Wald, P. Slusallek, C. Benthin, M. Wagner, *Interactive Rendering with Coherent Ray Tracing*, 2001; S. Boulos
 //! et al., *Packet-based Whitted and Distribution Ray Tracing*, 2007, for the intervals.
 
+mod every;
+mod gather;
+
+pub use gather::gather;
+
 use super::Bvh;
 use super::node::{Child, Entry, Node, Stack, key};
 use super::single::{planes, splat8};
-use crate::accel::Hit;
-use crate::accel::batch::{Sixteen, Source};
+use crate::accel::batch::Sixteen;
 use crate::accel::block::{BLOCK, Block, splat4};
-use crate::accel::lists::OutOfMemory;
-use crate::accel::met::Met;
-use crate::accel::ray::{Eight, Heading, Ready, load8, prepare, proper, slabs};
-use crate::geometry::ray_triangle::{Crossing, along, watertight};
+use crate::accel::ray::{Heading, Ready, load8, slabs};
+use crate::geometry::ray_triangle::{Crossing, watertight};
 use crate::real::{Lanes, Real};
 use crate::simd::{Simd, SimdBase};
 use std::hint::black_box;
@@ -25,8 +27,6 @@ use std::sync::atomic::{Ordering, compiler_fence};
 /// Rays in a packet: two groups of eight lanes.
 pub const SIZE: usize = 16;
 const GROUPS: usize = SIZE / 8;
-/// Rays run alike if they stay this close to the first, as a part of the scene's size, from one side of it to the other.
-const SPREAD: f64 = 0.07;
 
 /// The rays, their nearest hits, and the intervals that hold them.
 pub struct Packet<T: Real, S: Simd> {
@@ -44,118 +44,6 @@ pub struct Packet<T: Real, S: Simd> {
     far: [T::V8<S>; 3],
     inverse: [[T::V8<S>; 3]; 2],
     t_min: T::V8<S>,
-}
-
-/// A packet of rays that share their heading and stay close together; None if they do not.
-#[inline(always)]
-pub fn gather<T: Real, S: Simd>(
-    s: S,
-    tree: &Bvh<T>,
-    rays: &impl Source<T>,
-    first: usize,
-) -> Option<Packet<T, S>> {
-    let heading = Heading::of(rays.direction(first));
-    // Most batches without coherence are told apart here.
-    if !heading.agrees(rays.direction(first + SIZE - 1)) || !heading.agrees(rays.direction(first + SIZE / 2))
-    {
-        return None;
-    }
-    let rays_ready = [
-        gather_group(tree, heading, rays.eight(s, first))?,
-        gather_group(tree, heading, rays.eight(s, first + 8))?,
-    ];
-    if !close(tree, heading, &rays_ready) {
-        return None;
-    }
-    let [a, b] = &rays_ready;
-    let zero = splat8::<T, S>(s, T::zero());
-    let (mut near, mut far, mut inverse) = ([zero; 3], [zero; 3], [[zero; 3]; 2]);
-    for k in 0..3 {
-        let (near_side, far_side) = ([a.near[k], b.near[k]], [a.far[k], b.far[k]]);
-        let (n, f) = if heading.negative[k] == 0 {
-            (greatest::<T, _, S>(near_side), least::<T, _, S>(far_side))
-        } else {
-            (least::<T, _, S>(near_side), greatest::<T, _, S>(far_side))
-        };
-        let slopes = [a.inverse[k], b.inverse[k]];
-        (near[k], far[k]) = (splat8(s, n), splat8(s, f));
-        inverse[0][k] = splat8(s, least::<T, _, S>(slopes));
-        inverse[1][k] = splat8(s, greatest::<T, _, S>(slopes));
-    }
-    let mut ignore = None;
-    if rays.ignoring() {
-        let (mut faces, mut greatest) = ([-1; SIZE], -1);
-        for i in 0..SIZE {
-            faces[i] = rays.ray(first + i).ignore_face;
-            greatest = greatest.max(faces[i]);
-        }
-        if greatest >= 0 {
-            ignore = Some(faces);
-        }
-    }
-    Some(Packet {
-        heading,
-        ignore,
-        t: [a.t_max, b.t_max],
-        u: [zero; GROUPS],
-        v: [zero; GROUPS],
-        face: [splat8(s, T::of_low_bits(-1)); GROUPS],
-        near,
-        far,
-        inverse,
-        t_min: splat8(s, least::<T, _, S>([a.t_min, b.t_min])),
-        rays: rays_ready,
-    })
-}
-
-/// Eight rays made ready; None if one is no ray or goes another way.
-#[inline(always)]
-fn gather_group<T: Real, S: Simd>(
-    tree: &Bvh<T>,
-    heading: Heading,
-    Eight { origin: o, direction: d, t_min: low, t_max: high }: Eight<T::V8<S>>,
-) -> Option<Ready<T::V8<S>>> {
-    let mut same = proper(o, d, low, high) & along(heading.order[2], d);
-    for k in 0..3 {
-        let negative = d[k].less(d[k].num(0.0));
-        same = same & if heading.negative[k] == 1 { negative } else { !negative };
-    }
-    if T::V8::<S>::bits(same) != 0xff {
-        return None;
-    }
-    Some(prepare(&tree.bounds, o, d, low, high).ready(heading))
-}
-
-/// The least of sixteen lanes.
-#[inline(always)]
-fn least<T: Real, V: SimdBase<S, Element = T> + Lanes<Elem = T>, S: Simd>([a, b]: [V; GROUPS]) -> T {
-    SimdBase::min(a, b).reduce_min()
-}
-
-/// The greatest of sixteen lanes.
-#[inline(always)]
-fn greatest<T: Real, V: SimdBase<S, Element = T> + Lanes<Elem = T>, S: Simd>([a, b]: [V; GROUPS]) -> T {
-    SimdBase::max(a, b).reduce_max()
-}
-
-/// Whether the rays pass the first and the last plane of the scene, across the heading, close together.
-#[inline(always)]
-fn close<T: Real, S: Simd>(tree: &Bvh<T>, heading: Heading, [a, b]: &[Ready<T::V8<S>>; GROUPS]) -> bool {
-    let [low, high] = &tree.bounds;
-    let size = (high[0] - low[0]).max(high[1] - low[1]).max(high[2] - low[2]);
-    let limit = a.scale.like(size * T::of(SPREAD));
-    // Whatever lane: NaN is far from everything.
-    let mut close = Lanes::less_eq(limit, limit);
-    for corner in [low, high] {
-        let z = a.scale.like(corner[heading.order[2]]);
-        let (az, bz) = (z - a.origin.z, z - b.origin.z);
-        let (ax, bx) = (a.origin.x + a.shear.x * az, b.origin.x + b.shear.x * bz);
-        let (ay, by) = (a.origin.y + a.shear.y * az, b.origin.y + b.shear.y * bz);
-        let (x, y) = (ax.like(ax.as_array()[0]), ay.like(ay.as_array()[0]));
-        close = close & Lanes::abs(ax - x).less_eq(limit) & Lanes::abs(bx - x).less_eq(limit);
-        close = close & Lanes::abs(ay - y).less_eq(limit) & Lanes::abs(by - y).less_eq(limit);
-    }
-    T::V8::<S>::bits(close) == 0xff
 }
 
 impl<T: Real, S: Simd> Packet<T, S> {
@@ -263,58 +151,6 @@ impl<T: Real, S: Simd> Packet<T, S> {
             }
         }
         false
-    }
-
-    /// Adds every hit of the rays, which are those from number `first` on.
-    #[inline(always)]
-    pub fn every(&mut self, s: S, tree: &Bvh<T>, first: u32, met: &mut Met<T>) -> Result<(), OutOfMemory> {
-        black_box(&mut *self);
-        let end = self.end();
-        let mut stack = Stack::new();
-        stack.push(Entry::new(T::zero(), Child::ROOT));
-        while let Some(entry) = stack.pop() {
-            compiler_fence(Ordering::SeqCst);
-            let child = entry.child();
-            if child.is_leaf() {
-                for block in tree.run(child) {
-                    met.reserve(SIZE * BLOCK)?;
-                    self.block(s, block, end, first, met);
-                }
-                continue;
-            }
-            let node = tree.node(child);
-            let (mut bits, _) = self.children(s, node, end);
-            while bits != 0 {
-                let i = bits.trailing_zeros() as usize & 7;
-                bits &= bits - 1;
-                if self.any_passes(s, node, i) {
-                    stack.push(Entry::new(T::zero(), node.children[i]));
-                }
-            }
-        }
-        Ok(())
-    }
-
-    /// Adds every hit on the triangles of a block, for which there must be room.
-    #[inline(always)]
-    fn block(&self, s: S, block: &Block<T>, end: T, first: u32, met: &mut Met<T>) {
-        let mut boxes = self.own_boxes(s, block, end);
-        while let Some((lane, corners, own)) = boxes.next(s, block, self.heading.order) {
-            for g in 0..GROUPS {
-                let Some((mask, x)) = self.crossing(g, corners, own) else { continue };
-                let ray = &self.rays[g];
-                let mut bits = T::V8::<S>::bits(mask & Lanes::less(x.t, ray.t_max));
-                let t = (x.t * ray.scale + splat8(s, T::zero())).to_array();
-                let (u, v, face) = (x.u.to_array(), x.v.to_array(), block.faces[lane]);
-                while bits != 0 {
-                    let l = bits.trailing_zeros() as usize & 7;
-                    bits &= bits - 1;
-                    if self.ignore.is_none_or(|ignore| ignore[8 * g + l] != face) {
-                        met.put(first + (8 * g + l) as u32, Hit { t: t[l], u: u[l], v: v[l], face });
-                    }
-                }
-            }
-        }
     }
 
     /// Tests the triangles of a leaf one by one; true if a ray's hit came nearer.
