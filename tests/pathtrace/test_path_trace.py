@@ -250,8 +250,8 @@ def spot_seen(world, depth, strategy, samples=1024, **options):
     return pixels.mean(), pixels.std(ddof=1) / 16
 
 
-def agree(world, depth=1, strategies=get_args(Strategy), **options):
-    seen = np.array([spot_seen(world, depth, s, **options) for s in strategies])
+def agree(world, depth=1, **options):
+    seen = np.array([spot_seen(world, depth, s, **options) for s in get_args(Strategy)])
     # Scrambled points err alike over pixels hardly at all: five standard errors, and what rounding leaves.
     bound = 5 * np.hypot(seen[:, 1], seen[0, 1]) + 1e-6 * seen[0, 0]
     np.testing.assert_array_less(np.abs(seen[:, 0] - seen[0, 0]), bound + 1e-12)
