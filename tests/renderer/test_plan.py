@@ -6,7 +6,7 @@ from types import SimpleNamespace
 import numpy as np
 import pytest
 import shadelab as sl
-from shadelab.light import DirectionalLight, PointLight, RectLight
+from shadelab.light import DirectionalLight, PointLight, RectLight, SphereLight
 from shadelab.scene import Camera, Instance, Material, Scene
 
 CAMERA = Camera((3, 3, 6), (0, 0.5, 0))
@@ -241,7 +241,7 @@ def test_long_views_under_the_sun_have_cascades_and_small_ones_none():
     assert "pixels wide" in chart.reason and plan.find("shadow").settings["technique"] == "hard"
     small = sl.plan(Scene([GROUND, BOX], DirectionalLight((0.5, -1, 0.2), (3, 3, 3)), CAMERA), (320, 180))
     assert "cascades" not in small.find("shadow map").settings
-    assert "one map's texels are at most" in why_not(small, "cascades")
+    assert "pixels wide" in why_not(small, "cascades")
     # What they are for: less is wrong than with one map, by rays.
     frame = sl.render(long, plan)
     settings = {"resolution": 2048}
@@ -255,3 +255,125 @@ def test_long_views_under_the_sun_have_cascades_and_small_ones_none():
     exact = ~bvh.any_hit(origins, np.broadcast_to(-np.float32(long.lights[0].direction), origins.shape))
     off, off_one = (float((f.lit[0][seen] != exact).mean()) for f in (frame, one))
     assert off < 0.02 and off < 0.6 * off_one
+
+
+MOMENTS = {"resolution": 512, "filter": "mip"}
+MEASURED = {
+    "hard": {"resolution": 512},
+    "pcf": {"resolution": 512, "samples": 16, "radius": 4.0},
+    "pcss": {"resolution": 512, "blocker_samples": 8, "filter_samples": 16},
+    "variance": MOMENTS,
+    "exponential_variance": MOMENTS,
+    "moment": MOMENTS,
+    "variance_soft": MOMENTS | {"kind": "moment", "reduce": 2},
+    "ray_traced": {"samples": 16},
+}
+
+
+def test_every_technique_that_evidence_may_name_is_rendered():
+    from shadelab.renderer._shadows import _TECHNIQUES
+
+    assert set(MEASURED) == set(_TECHNIQUES)
+    scene = Scene([GROUND, BOX], AREA, CAMERA)
+    lit = {}
+    for technique, knobs in MEASURED.items():
+        plan = sl.plan(scene, (64, 36), max_error=0.1, evidence=Study(technique, **knobs))
+        assert plan.find("shadow").settings["technique"] == technique
+        lit[technique] = sl.render(scene, plan).lit[0]
+    # All find the same shadow, but for its edges.
+    for technique, picture in lit.items():
+        assert (lit["ray_traced"] < 0.1).sum() > 10
+        assert np.abs(picture - lit["ray_traced"]).mean() < 0.05, technique
+
+
+@pytest.mark.parametrize("size", [(64, 36), (160, 90), (320, 180), (640, 360)])
+def test_texels_are_as_small_as_the_plan_says(size):
+    boxes = [Instance(sl.mesh.box((1.0, 2.0, 1.0)), translated(x, 1, z)) for x in (-20, 0, 20) for z in (-20, 0, 20)]
+    camera = Camera((0, 6, 0), (0, 5, -8), fov_y=0.8)
+    scene = Scene([Instance(sl.mesh.plane(100.0)), *boxes], DirectionalLight((0.3, -1, 0.2), (1, 1, 1)), camera)
+    plan = sl.plan(scene, size)
+    settings = plan.find("shadow map").settings
+    if "cascades" in settings:
+        return
+    said = float(why_not(plan, "cascades").split("at most ")[1].split()[0])
+    frame, arrays = sl.render(scene, plan), scene.flatten(np.float32)
+    drawn = sl.shadow.shadow_map(
+        arrays.positions, arrays.faces, scene.lights[0], **settings, receivers=frame.position[np.isfinite(frame.depth)]
+    )
+    widest = drawn.texel_size() / (frame.depth.min() * 2 * np.tan(0.4) / size[1])
+    assert said <= 4 and widest <= 1.05 * said
+
+
+@pytest.mark.parametrize("size", [(110, 62), (160, 90), (320, 180)])
+def test_penumbrae_on_tilted_receivers_are_wider(size):
+    # Light that grazes the ground over a wall: penumbrae are far wider than on what faces the light.
+    ground = sl.mesh.Mesh(
+        np.array([[1, 0, -5], [21, 0, -5], [21, 0, 5], [1, 0, 5.0]]), np.array([[0, 2, 1], [0, 3, 2]])
+    )
+    wall = Instance(sl.mesh.box((0.01, 0.9, 4.0)), translated(1.05, 0.45, 0))
+    lamp = RectLight(center=(0, 1, 0), edge_u=(0, 0.01, 0), edge_v=(0, 0, 0.01), radiance=(1e4, 1e4, 1e4))
+    scene = Scene([Instance(ground), wall], lamp, Camera((10, 30.0, 0.01), (10, 0, 0), fov_y=0.5))
+    plan = sl.plan(scene, size)
+    assert plan.find("shadow").settings["technique"] != "hard"
+
+
+def test_penumbrae_are_within_the_bound():
+    from shadelab.renderer._facts import facts_of, widest_penumbra
+
+    rng = np.random.default_rng(4)
+    for tilt in (0.0, 0.5, 1.0, 1.3):
+        lamp = RectLight((0, 4, 0), (1e-3, 0, 0), (0, 0, 1e-3), (9, 9, 9))
+        turn = sl.transform.rotate_z(tilt)
+        low = Instance(sl.mesh.plane(1.0), sl.transform.translate([0.3, 0, 0]) @ turn)
+        post = Instance(sl.mesh.plane(0.2), sl.transform.translate([0.2, 2.0, 0]))
+        scene = Scene([low, post], lamp, Camera((0, 40, 0.1), (0, 0, 0)))
+        facts = facts_of(scene, (64, 36))
+        normal = turn[:3, :3] @ [0, 1, 0]
+        origin = np.array([0.3, 0, 0])
+        # Where all corners' rays through points of the post's edge meet the plane.
+        corners = np.asarray(lamp.corners)
+        edge = np.stack([np.full(50, 0.3), np.full(50, 2.0), rng.uniform(-0.1, 0.1, 50)], -1)
+        way = edge[:, None] - corners
+        t = ((origin - corners) @ normal) / (way @ normal)
+        hits = corners + way * t[..., None]
+        wide = np.linalg.norm(hits[:, :, None] - hits[:, None], axis=-1).max()
+        assert wide <= widest_penumbra(lamp, facts) < 100 * wide
+
+
+def test_rays_in_place_of_what_was_measured_say_what_they_keep():
+    room, box = Instance(sl.mesh.box(4.0)), Instance(sl.mesh.box(), sl.transform.translate([1.0, -1, 0]))
+    lamp = SphereLight(center=(0, 1, 0), radius=0.3, radiance=(9, 9, 9))
+    scene = Scene([room, box], lamp, Camera((0, 0, 1.9), (0, 0, 0)))
+    study = Study("pcss", resolution=512)
+    plain = sl.plan(scene, (32, 18)).find("shadow")
+    assert plain.settings == {"technique": "ray_traced", "samples": 16} and "at most 0.12" in plain.reason
+    for bound in (0.1, 0.05, 0.02):
+        found = sl.plan(scene, (32, 18), max_error=bound, evidence=study).find("shadow")
+        samples = found.settings["samples"]
+        assert 0.5 / np.sqrt(samples) <= bound < 0.5 / np.sqrt(samples - 1) + 1e-9 or samples == 16
+        assert f"{bound:.2g}" in found.reason and "not kept" not in found.reason
+        # That bound needs no study.
+        assert sl.plan(scene, (32, 18), max_error=bound).find("shadow").settings == found.settings
+    # The bound holds.
+    plan = sl.plan(scene, (64, 36), max_error=0.05)
+    once, many = (
+        sl.render(scene, sl.plan(scene, (64, 36), max_error=bound), seed=seed).lit[0]
+        for bound, seed in ((0.05, 1), (0.01, 2))
+    )
+    assert plan.find("shadow").settings["samples"] == 100 and np.sqrt(np.mean((once - many) ** 2)) < 0.05
+    tight = sl.plan(scene, (32, 18), max_error=0.001, evidence=study).find("shadow")
+    assert tight.settings["samples"] == 4096 and "max_error 0.001 is not kept" in tight.reason
+    timed = sl.plan(scene, (32, 18), budget_ms=5.0, evidence=study).find("shadow")
+    assert "budget_ms is not kept" in timed.reason
+    # What was measured of rays themselves stays.
+    kept = sl.plan(scene, (32, 18), max_error=0.02, evidence=Study("ray_traced", samples=8)).find("shadow")
+    assert kept.settings["samples"] == 8 and "measured" in kept.reason
+
+
+def test_without_evidence_plans_say_what_error_is_known():
+    reason = sl.plan(Scene([GROUND, BOX], AREA, CAMERA)).find("shadow").reason
+    assert "not measured" in reason
+    reason = sl.plan(Scene([GROUND, BOX], PointLight((0, 8, 0)), CAMERA)).find("shadow").reason
+    assert "texels" in reason
+    reason = sl.plan(Scene([GROUND, BOX], PointLight((1, 1, 0)), CAMERA)).find("shadow").reason
+    assert "one ray is exact" in reason

@@ -232,3 +232,28 @@ def test_errors_name_the_argument():
         sl.shadow.hard(maps, [0, 0, -3.0], UP, full_output="no")
     with pytest.raises(TypeError, match="receiver_plane"):
         sl.shadow.hard(maps, [0, 0, -3.0], UP, receiver_plane=None)
+
+
+@pytest.mark.parametrize("stable", [True, False])
+@pytest.mark.parametrize("method", ["practical", "uniform", "logarithmic"])
+@pytest.mark.parametrize("blend", [0.1, 0.6])
+def test_nothing_leaks_where_cascades_cross_over(blend, method, stable):
+    # All that is seen of the ground lies in the shadow of a roof as large as it.
+    low, roof = sl.mesh.plane(400.0), sl.mesh.plane(400.0)
+    positions = np.concatenate([low.positions, roof.positions + np.array([0, 30, 0])])
+    faces = np.concatenate([low.faces, roof.faces + len(low.positions)])
+    crossed = 0
+    for fov in (0.1, 0.3, 0.8, 1.5):
+        camera = Camera((0, 3, 90), (0, 0, 40), fov_y=fov)
+        origins, directions = camera.rays((160, 90), dtype=np.float64)
+        with np.errstate(divide="ignore"):
+            t = -origins[..., 1] / directions[..., 1]
+        points = (origins + directions * t[..., None])[(t > 0) & (t < 1e4)]
+        points = points[np.abs(points[:, [0, 2]]).max(-1) < 150]
+        knobs = {"aspect": 160 / 90, "near": 1.0, "far": 150.0, "method": method, "blend": blend, "stable": stable}
+        maps = sl.shadow.cascades(positions, faces, DirectionalLight((0, -1, 0)), camera, 256, **knobs)
+        points = points[(points - np.array(camera.eye)) @ maps.axis < 150.0]
+        found = sl.shadow.hard(maps, points, UP, full_output=True)
+        crossed += int((found.share > 0).sum())
+        assert not found.lit.any()
+    assert crossed > 100

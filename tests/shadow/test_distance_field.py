@@ -148,7 +148,7 @@ def test_width_and_hardness_are_one_knob(scenes):
         ((lit > 0) & (lit < 1)).mean()
         for lit in (SHADOW.distance_field(grid, points, UP, sun, k=k) for k in (4, 16, 64))
     ]
-    assert shares[0] > 1.5 * shares[1] > 2 * shares[2] > 0
+    assert shares[0] > 1.5 * shares[1] and shares[1] > 2 * shares[2] > 0
 
 
 @pytest.mark.parametrize("dtype", [np.float32, np.float64])

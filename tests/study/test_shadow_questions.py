@@ -1,9 +1,11 @@
 """Questions of shadow maps: aliasing, bias and memory; their masks and prices, and what each must find."""
 
 import csv
+import gc
 
 import numpy as np
 import pytest
+import shadelab as sl
 from shadelab import study
 from shadelab.light import PointLight
 from shadelab.study.questions import _visibility, shadow_aliasing, shadow_bias, shadow_memory
@@ -34,7 +36,7 @@ def test_aliasing_falls_with_resolution_and_is_worse_near():
         hard = by_setting(result, "hard", view)
         values = [hard[(n,)].error.value for n in (256, 1024, 4096)]
         # Errors of outlines are of a texel's size: the share falls by four, its root by two, for each.
-        assert values[0] > 1.4 * values[1] > 1.4 * values[2]
+        assert values[0] > 1.4 * values[1] and values[1] > 1.4 * values[2]
     assert hard[(1024,)].counters["bytes"] == 4 * 1024**2
 
 
@@ -107,4 +109,62 @@ def test_further_samples_are_others():
     assert error[2] < 0.85 * min(error[:2])
     part = np.zeros_like(where)
     part[20:30] = True
-    np.testing.assert_allclose(shadow_memory._estimate(inputs, 16, 1, 0, part).shape, a.shape)
+    some = shadow_memory._estimate(inputs, 256, 1, 0, part)
+    assert some.shape == a.shape and not some[~(part & inputs.covered)].any()
+    # Patterns follow the batch, so a part's values are those of the whole but for noise.
+    there = part & where
+    assert there.sum() > 100 and np.abs((some - whole)[there]).mean() < 0.02 < some[there].mean()
+
+
+def test_bytes_are_no_milliseconds(tmp_path):
+    question = shadow_memory.question()
+    few = [c for c in question.candidates if c.name == "pcss"]
+    ask = study.Question(**{**vars(question), "candidates": few})
+    result = study.run(ask, "contact", size=(48, 27), rounds=3, patience=0.0, cache=False, reference_seconds=0.2)
+    with pytest.raises(ValueError, match=r"budget_ms: expected a study of times, .* megabytes"):
+        result.pick(budget_ms=50)
+    choice = result.pick(max_error=0.9)
+    assert choice.cost_interval.value == 4 * 128**2 and " MB" in str(choice)
+    # Milliseconds are milliseconds.
+    (record,) = (r for r in result.records if r.setting == choice.setting)
+    assert choice.ms == record.counters["ms"] == choice.ms_interval.value < 1e4
+    scene = _visibility.BREAKING["contact"]()
+    plan = sl.plan(scene, (48, 27), max_error=0.9, evidence=result)
+    said = next(p.reason for p in plan.passes if "measured: error" in p.reason)
+    assert "MB" in said and f"{choice.ms:.3g} ms" in said and "65536" not in said and "6.55e+04" not in said
+    with pytest.raises(ValueError, match="budget_ms"):
+        sl.plan(scene, (48, 27), budget_ms=50, evidence=result)
+
+
+def test_what_has_no_price_is_refused_before_anything_is_measured(tmp_path):
+    def mine(inputs):
+        raise AssertionError("measured")
+
+    with pytest.raises(ValueError, match=r"candidates: .*'bytes'.*'mine' has none"):
+        study.run("shadow memory", "contact", candidates=[mine], techniques=[], **FAST)
+    with pytest.raises(ValueError, match="candidates: 'g' has a time, but what 'shadow memory' asks is bytes"):
+        study.run("shadow memory", "contact", candidates=[study.External(tmp_path / "g.png", 1.8)], **FAST)
+    other = study.Candidate(
+        "other",
+        lambda inputs, _: np.ones((len(inputs.lights), len(inputs.points))),
+        counters=lambda inputs: {"taps": 1},
+    )
+    with pytest.raises(ValueError, match="'bytes' among the counters of 'other', got 'taps'"):
+        study.run("shadow memory", "contact", candidates=[other], techniques=[], **FAST)
+
+
+def test_fields_in_double_are_double():
+    scene = _visibility.BREAKING["contact"]()
+    found = {}
+    for dtype in (np.float32, np.float64):
+        case = study.Case("contact", "", scene, scene.camera, (48, 27), np.dtype(dtype), 0)
+        inputs = shadow_memory._setup(case)
+        grid = shadow_memory._grid(inputs, 16)
+        assert grid.distances.dtype == dtype and shadow_memory._grid(inputs, 16) is grid
+        found[dtype] = shadow_memory._field(inputs, None, 16)
+    assert all(v.dtype == k for k, v in found.items())
+    assert len(shadow_memory._FIELDS) >= 1
+    # Nothing is kept beyond the case.
+    del inputs, grid
+    gc.collect()
+    assert not len(shadow_memory._FIELDS)

@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 
 from .. import _arrays, light, raster, shadow
 
-_RESOLUTIONS = (256, 512, 1024, 2048)
+RESOLUTIONS = (256, 512, 1024, 2048)
 
 
 @dataclass(frozen=True)
@@ -171,24 +171,49 @@ def beyond_one_map(lamp: Any, facts: Facts) -> str:
 
 
 def widest_penumbra(lamp: Any, facts: Facts) -> float:
-    """A bound by similar triangles: the nearest blocker over the farthest receiver."""
+    """A bound by similar triangles, on receivers of any tilt; if too wide for a pixel already without tilt, that alone.
+
+    The rays from a light through one point of a blocker meet a plane within the light's diameter, times how much
+    farther the plane is than the blocker, over the least cosine of a ray and the plane's normal: the norm of a
+    projection along the ray. The nearest blocker over the farthest receiver bounds the one, corners of the light and
+    of faces the other.
+    """
     depths = depths_before(lamp, facts.positions[np.unique(facts.faces)])
     if depths.min() <= 0.0:
         return math.inf
-    if isinstance(lamp, light.RectLight):
-        side = max(float(np.linalg.norm(lamp.edge_u)), float(np.linalg.norm(lamp.edge_v)))
-    elif isinstance(lamp, light.PolygonLight):
-        side = max(math.dist(a, b) for a in lamp.corners for b in lamp.corners)
+    corners = np.asarray(outline(lamp))
+    if isinstance(lamp, light.RectLight | light.PolygonLight):
+        across, behind = max(math.dist(a, b) for a in corners for b in corners), 0.0
     else:
-        side = 2.0 * float(lamp.radius)
-    return side * float(depths.max() / depths.min() - 1.0)
+        across = 2.0 * float(lamp.radius)
+        behind = across if isinstance(lamp, light.SphereLight) else 0.0
+    width = across * float((depths.max() + behind) / depths.min() - 1.0)
+    if not width < facts.nearest * facts.pixel:
+        return width
+    return width / max(_least_cosine(corners, facts), 1e-300)
+
+
+def _least_cosine(corners: NDArray[np.float64], facts: Facts) -> float:
+    """Of normals and directions to a light, where it shines on the side that is seen; 0 if it crosses a face's plane."""
+    at = facts.positions[facts.faces]
+    normals = np.cross(at[:, 1] - at[:, 0], at[:, 2] - at[:, 0])
+    length = np.linalg.norm(normals, axis=-1)
+    at, normals = at[length > 0], normals[length > 0] / length[length > 0, None]
+    normals *= np.sign(np.einsum("ij,ij->i", facts.eye - at[:, 0], normals))[:, None]
+    low, high, far = np.full(len(at), math.inf), np.full(len(at), -math.inf), np.zeros(len(at))
+    for corner in corners:
+        height = np.einsum("ij,ij->i", corner - at[:, 0], normals)
+        low, high = np.minimum(low, height), np.maximum(high, height)
+        far = np.maximum(far, np.linalg.norm(at - corner, axis=-1).max(-1, initial=0.0))
+    shone = high > 1e-9 * far
+    return float((np.maximum(low, 0.0) / np.maximum(far, 1e-300))[shone].min(initial=1.0))
 
 
 def resolution_for(facts: Facts) -> int:
     """The least resolution whose texels are no larger than a pixel at the scene's middle."""
     distance = facts.nearest + facts.extent / 2
     texels = facts.extent / max(distance * facts.pixel, 1e-30)
-    return next((r for r in _RESOLUTIONS if r >= texels), _RESOLUTIONS[-1])
+    return next((r for r in RESOLUTIONS if r >= texels), RESOLUTIONS[-1])
 
 
 def check_scene(scene: Any) -> None:

@@ -142,7 +142,7 @@ def render(
         elif kind == "shadow map":
             chart = _chart(p, arrays, lamps[index], scene.camera, chosen.size, seen)
         elif kind == "shadow":
-            seeded = p.settings.get("technique") != "hard" and "seed" not in p.settings
+            seeded = p.settings.get("technique") in ("pcf", "pcss", "ray_traced") and "seed" not in p.settings
             how = Pass(p.name, p.reason, {**p.settings, "seed": seed}) if seeded else p
             fractions[index] = _lit(how, lamps[index], seen, chart, bvh)
         elif kind == "direct light":

@@ -61,9 +61,14 @@ def plan(
     -----
     Decided by necessity: no pass without surfaces, lights, or something that can stand between them (one plane and
     one convex body shade nothing); no map for a light that emits nothing or faces away; no penumbra for lights without
-    extent or where similar triangles bound it below a pixel; no cascades where the texels of one map of 2048² are at
-    most 4 pixels wide in the nearest that is seen, else as many (up to 6, of equal ratio) as bring them there. Bounds
-    are on the safe side: a pass may be there without need, never missing with need.
+    extent or where similar triangles bound it below a pixel on every receiver, however tilted; no cascades where the
+    texels of one map of at most 2048² are at most 4 pixels wide in the nearest that is seen, else as many (up to 6, of
+    equal ratio) as bring them there. Bounds are on the safe side: a pass may be there without need, never missing with
+    need.
+
+    Where one map cannot see what an area light shines on, rays take the place of what was measured: as many, up to
+    4096, as keep `max_error` by the bound of their noise, 1/(2 √n). The pass says the error expected of them, and which
+    bounds are not kept: `budget_ms` never is, since nothing was measured of rays.
 
     Materials are tried, not guessed at: where a small picture shows them (128 places each), under the scene's lights
     without obstacles, cheaper models (a diffuser; metallic-roughness; metal without compensation) and cheaper ways to
@@ -105,7 +110,8 @@ def decided(
     budget_ms: float | None = None,
     frequency: str = "phong",
 ) -> Plan:
-    facts, bounded = facts_of(scene, size), not (max_error is None and budget_ms is None)
+    facts = facts_of(scene, size)
+    bounds = {k: v for k, v in (("max_error", max_error), ("budget_ms", budget_ms)) if v is not None}
     passes: list[Pass] = []
     left_out: list[LeftOut] = []
     lamps = list(scene.lights)
@@ -128,7 +134,7 @@ def decided(
             left_out += [LeftOut(f"{n}{suffix}", dark) for n in ("shadow map", "direct light")]
             continue
         reaching.append(i)
-        more, less = shadow_passes(lamp, suffix, facts, measured, bounded, parts)
+        more, less = shadow_passes(lamp, suffix, facts, measured, bounds, parts)
         if not traced and any(p.settings.get("technique") == "ray_traced" for p in more):
             passes.append(Pass("bvh", "shadow rays are traced in it"))
             traced = True

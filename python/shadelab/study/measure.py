@@ -17,7 +17,7 @@ from .._runtime import threads as threads_now
 from . import references, statistics
 from .judge import Judge, Pictures, Setting, external_record, precision, repeat_seed, with_times
 from .machine import machine
-from .question import Candidate, Case, External, MonteCarlo, Question
+from .question import Candidate, Case, External, MonteCarlo, Question, _no_counters
 from .records import CaseRecord, Record
 from .results import Study
 from .statistics import Interval
@@ -74,7 +74,7 @@ def run(
         Width and height of the picture; the question's own otherwise.
     candidates : iterable, optional
         More to measure beside the question's: a `Candidate`; a function `f(inputs)` that answers the question; an
-        `External` picture with its time.
+        `External` picture with its time. Where the question's cost is a counter, only candidates that count it.
     techniques : iterable of str, optional
         The names of those of the question's candidates to measure; all otherwise.
     views : mapping, optional
@@ -106,8 +106,8 @@ def run(
     Raises
     ------
     TypeError, ValueError
-        If the question, a scene, a technique or a parameter is not known or out of its domain, or a candidate's answer
-        has not the reference's shape.
+        If the question, a scene, a technique or a parameter is not known or out of its domain, a candidate's answer has
+        not the reference's shape, or a candidate lacks the counter that is the question's cost.
 
     Notes
     -----
@@ -145,6 +145,7 @@ def run(
         causes and question.causes,
         cache,
     )
+    _check_prices(plan, candidates)
     if not plan.settings and not plan.external:
         raise ValueError("techniques: expected at least one, or candidates beside")
     size = _size(question.size if size is None else size)
@@ -158,6 +159,20 @@ def run(
     finally:
         if threads is not None:
             set_threads(before)
+
+
+def _check_prices(plan: _Plan, more: list[Any]) -> None:
+    """Refuses what has no price before anything is measured."""
+    cost = plan.question.cost
+    if cost == "time":
+        return
+    for c in more:
+        if isinstance(c, External):
+            raise ValueError(f"candidates: {c.title!r} has a time, but what {plan.question.name!r} asks is {cost}")
+    for candidate, _ in plan.settings:
+        if candidate.counters is _no_counters:
+            say = f"expected a Candidate whose counters give {cost!r}, the cost of {plan.question.name!r}"
+            raise ValueError(f"candidates: {say}; {candidate.name!r} has none")
 
 
 def _size(size: Any) -> tuple[int, int]:
@@ -350,6 +365,11 @@ def _priced(record: Record, question: Question) -> Record:
     """A record whose cost is a counter, where the question asks for that; the time becomes a counter."""
     if question.cost == "time":
         return record
+    if question.cost not in record.counters:
+        known = ", ".join(map(repr, record.counters)) or "none"
+        raise ValueError(
+            f"candidates: expected {question.cost!r} among the counters of {record.technique!r}, got {known}"
+        )
     price = float(record.counters[question.cost])
     counters = {k: v for k, v in record.counters.items() if k != question.cost} | {"ms": record.ms.value}
     return replace(record, ms=Interval(price, price, price), spread=0.0, prepare_ms=0.0, counters=counters)

@@ -118,7 +118,7 @@ def _choice_box(choice: Choice | None, refusal: str) -> str:
         return f'<p class="choice-box none">{_text(refusal[:1].upper() + refusal[1:])}.</p>'
     if choice is None:
         return ""
-    e, t = choice.error_interval, choice.ms_interval
+    e, t = choice.error_interval, choice.cost_interval
     where = f", the worst of {choice.cases} cases ({_text(choice.error_case)})" if choice.cases > 1 else ""
     return (
         f'<div class="choice-box">For {_text(choice.asked)}:<br><b>{_text(choice.setting)}</b><br>'

@@ -177,7 +177,11 @@ class Summary:
 
 @dataclass(frozen=True, repr=False)
 class Choice:
-    """What `pick` chose: technique, knobs, its worst error and time, the metric and mask that this was judged by."""
+    """What `pick` chose: technique, knobs, its worst error and time, the metric and mask that this was judged by.
+
+    `ms` are milliseconds whatever the study's costs are. `cost_interval` is what it costs as recorded: `ms_interval`
+    itself, but in a study of bytes bytes; times `unit[1]` it is in `unit[0]`.
+    """
 
     technique: str
     knobs: dict[str, Any]
@@ -186,7 +190,7 @@ class Choice:
     metric: str
     mask: str
     error_interval: Interval
-    ms_interval: Interval
+    cost_interval: Interval
     error_case: str
     asked: str
     cases: int
@@ -197,8 +201,13 @@ class Choice:
         """Technique and knobs in one text."""
         return setting_text(self.technique, self.knobs)
 
+    @property
+    def ms_interval(self) -> Interval:
+        """The confidence of `ms`; where the study's cost is another, `ms` alone is known."""
+        return self.cost_interval if self.unit == ("ms", 1.0) else Interval(self.ms, self.ms, self.ms)
+
     def __str__(self) -> str:
-        e, t = self.error_interval, self.ms_interval
+        e, t = self.error_interval, self.cost_interval
         where = f"worst of {self.cases} cases: {self.error_case}" if self.cases > 1 else f"case: {self.error_case}"
         low, value, high = (figure_text(v * self.unit[1]) for v in (t.low, t.value, t.high))
         price = f"{value} {self.unit[0]}"

@@ -148,7 +148,8 @@ class Study:
         Raises
         ------
         TypeError, ValueError
-            If neither bound is given, or a bound is not a positive number.
+            If neither bound is given, or a bound is not a positive number; or a budget in milliseconds is asked of a
+            study whose costs are others, such as bytes.
         NothingQualifies
             If no setting qualifies; the message names the one that comes nearest. It is a ValueError.
         """
@@ -159,6 +160,9 @@ class Study:
                 raise ValueError(f"{name}: expected a positive number, got {bound}")
         if max_error is None and budget_ms is None:
             raise ValueError("max_error, budget_ms: expected one of them, or both")
+        timed = self.settings.get("cost", "time") == "time"
+        if budget_ms is not None and not timed:
+            raise ValueError(f"budget_ms: expected a study of times, this one's costs are {self.cost_unit().long}")
         part = self.of(scene, view) if scene is not None or view is not None else self
         able = [s for s in part.summaries() if s.complete and s.error.known and s.ms.known]
         wanted = []
@@ -184,7 +188,7 @@ class Study:
             best.technique,
             best.knobs,
             best.error.value,
-            best.ms.value,
+            best.ms.value if timed else best.counters.get("ms", math.nan),
             self.metric["name"],
             self.mask["name"],
             best.error,

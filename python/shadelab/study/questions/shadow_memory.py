@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import threading
+import weakref
 from typing import Any
 
 import numpy as np
@@ -54,20 +56,21 @@ def _grid(inputs: Inputs, field_resolution: int) -> Any:
     """The distance field of what casts shadows but for what lies flat under all: built once a scene, as trees are."""
     low, high = inputs.caster_positions.min(0), inputs.caster_positions.max(0)
     solid = np.ptp(inputs.caster_positions[inputs.caster_faces], axis=1).max(-1) < 0.4 * (high - low).max()
-    if _FIELDS.get("of") is not inputs:
-        _FIELDS.clear()
-        _FIELDS["of"] = inputs
-    if field_resolution not in _FIELDS:
-        bvh = type(inputs.bvh)(inputs.caster_positions, inputs.caster_faces[solid])
-        seen = inputs.caster_positions[np.unique(inputs.caster_faces[solid])]
-        margin = 0.1 * np.ptp(seen, axis=0).max()
-        box = [seen.min(0) - margin, seen.max(0) + margin]
-        _FIELDS[field_resolution] = shadow.distance_grid(bvh, box, resolution=field_resolution)
-    return _FIELDS[field_resolution]
+    with _LOCK:
+        kept = _FIELDS.setdefault(inputs, {})
+        if field_resolution not in kept:
+            bvh = type(inputs.bvh)(inputs.caster_positions, inputs.caster_faces[solid])
+            seen = inputs.caster_positions[np.unique(inputs.caster_faces[solid])]
+            margin = 0.1 * np.ptp(seen, axis=0).max()
+            box = [seen.min(0) - margin, seen.max(0) + margin]
+            dtype = inputs.points.dtype
+            kept[field_resolution] = shadow.distance_grid(bvh, box, resolution=field_resolution, dtype=dtype)
+        return kept[field_resolution]
 
 
-_FIELDS: dict[Any, Any] = {}
-"""The fields of the case that was asked about last, and its inputs."""
+_FIELDS: weakref.WeakKeyDictionary[Inputs, dict[int, Any]] = weakref.WeakKeyDictionary()
+"""The fields of each case, as long as its inputs live."""
+_LOCK = threading.Lock()
 
 
 def _field(inputs: Inputs, prepared: None, field_resolution: int) -> Array:

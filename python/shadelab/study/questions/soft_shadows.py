@@ -32,7 +32,7 @@ _FLOOR = 0.05
 terminator a relative error is large and means nothing."""
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)
 class Inputs:
     """What reference and candidates are given: the G-buffer at pixel centres, and the scene to cast shadows.
 
