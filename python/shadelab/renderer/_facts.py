@@ -194,7 +194,7 @@ def widest_penumbra(lamp: Any, facts: Facts) -> float:
 
 
 def _least_cosine(corners: NDArray[np.float64], facts: Facts) -> float:
-    """Of normals and directions to a light, where it shines on the side that is seen; 0 if it crosses a face's plane."""
+    """Of normals and directions to a light, where it shines on a seen side; 0 if it crosses a plane."""
     at = facts.positions[facts.faces]
     normals = np.cross(at[:, 1] - at[:, 0], at[:, 2] - at[:, 0])
     length = np.linalg.norm(normals, axis=-1)
