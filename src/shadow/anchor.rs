@@ -9,9 +9,12 @@
 //! 1987; normal offset: D. Holbert, *Saying "Goodbye" to Shadow Acne*, GDC 2011.
 
 use crate::real::{Lanes, Real};
-use crate::shadow::lookup::{LOT, Map, ROUNDINGS, largest};
+use crate::shadow::lookup::{LOT, Map};
 use crate::simd::*;
 use crate::vec::Vec3;
+
+/// Units in the last place of depths that are granted always.
+const ROUNDINGS: f64 = 16.0;
 
 /// What is granted to a receiver before it counts as shadowed.
 #[derive(Clone, Copy)]
@@ -38,8 +41,8 @@ pub struct Feet<V> {
     /// Change of the plane per texel: of its reciprocal depth (perspective) or of its depth.
     gx: V,
     gy: V,
-    /// Depth that may be nothing but rounding: a few units in the last place of the receiver's coordinates, of the
-    /// light's, and of the depth itself.
+    /// Depth that may be nothing but rounding: a few units in the last place of the receiver's coordinates and of the
+    /// depth itself.
     pub rounding: V,
     /// A bit for each receiver that there is something to look up for.
     pub live: u64,
@@ -207,7 +210,8 @@ impl<T: Real> Map<'_, T> {
         let y = (all::<T, S>(s, self.corner[1]) - v) * all::<T, S>(s, self.scale[1]);
 
         let of_point = Lanes::max(Lanes::max(Lanes::abs(point.x), Lanes::abs(point.y)), Lanes::abs(point.z));
-        let sizes = Lanes::abs(q.z) + of_point + all::<T, S>(s, largest(self.origin.to_array()));
+        // Coordinates were rounded once, by half a unit each; the light's are the map's own.
+        let sizes = Lanes::abs(q.z) + of_point * all::<T, S>(s, T::of(0.125));
         let rounding = all::<T, S>(s, T::of(ROUNDINGS) * T::EPSILON) * sizes;
         let live = (numbers & before).to_bitmask();
         let answer = numbers.select(one, all::<T, S>(s, T::NAN));

@@ -139,15 +139,6 @@ pub fn at<T: Real>(normals: Option<&[[T; 3]]>, i: usize) -> Option<[T; 3]> {
     }
 }
 
-/// Units in the last place of coordinates that are granted to depths.
-pub(super) const ROUNDINGS: f64 = 16.0;
-
-/// The largest of a point's coordinates, by size.
-#[inline(always)]
-pub(super) fn largest<T: Real>([x, y, z]: [T; 3]) -> T {
-    x.abs().max(y.abs()).max(z.abs())
-}
-
 #[inline(always)]
 fn into_frame<T: Real>([right, up, axis]: [Vec3<T>; 3], v: Vec3<T>) -> Vec3<T> {
     Vec3::new(right.dot(v), up.dot(v), axis.dot(v))

@@ -134,7 +134,7 @@ def _contact(dtype: np.dtype) -> Measurement:
 
 
 @extreme(
-    "shadow.pcss", "penumbra by similar triangles", domain="blockers at 2^-10 to 1 - 2^-10 of 4", unit="ulp", claim=8
+    "shadow.pcss", "penumbra by similar triangles", domain="blockers at 2^-10 to 1 - 2^-10 of 4", unit="ulp", claim=16
 )
 def _penumbra(dtype: np.dtype) -> Measurement:
     worst = 0.0
