@@ -49,7 +49,7 @@ class Material:
     metallic : float in [0, 1]
     roughness : float in [0, 1]
         The artist's; the width of the microfacet distribution is its square.
-    emission : three floats
+    emission : three floats in [0, 1e30]
         Radiance that the surface gives off, in W/(m² sr).
     name : str
     specular : float in [0, 1]
@@ -79,7 +79,7 @@ class Material:
         set_(self, "metallic", _arrays.number("metallic", self.metallic, 0, 1))
         set_(self, "roughness", _arrays.number("roughness", self.roughness, 0, 1))
         set_(self, "specular", _arrays.number("specular", self.specular, 0, 1))
-        set_(self, "emission", _triple("emission", self.emission, 0))
+        set_(self, "emission", _triple("emission", self.emission, 0, 1e30))
 
     def _model(self) -> brdf.MetallicRoughness:
         return brdf.MetallicRoughness(self.base_color, self.metallic, self.roughness, self.specular)
@@ -201,7 +201,7 @@ class Scene:
         Of `shadelab.light`.
     camera : Camera, optional
         None fits one to the scene.
-    background : three floats
+    background : three floats in [0, 1e30]
         Radiance from everywhere that is not hit, in W/(m² sr).
     environment : Environment, optional
         A panorama of that radiance instead; see `shadelab.environment`.
@@ -244,7 +244,7 @@ class Scene:
             if not any(hasattr(light, n) for n in ("radiance", "intensity", "irradiance")):
                 raise TypeError(f"lights: expected lights, got {type(light).__name__}")
         set_(self, "lights", lights)
-        set_(self, "background", _triple("background", self.background, 0))
+        set_(self, "background", _triple("background", self.background, 0, 1e30))
         if self.environment is not None:
             from .environment import Environment
 

@@ -84,6 +84,9 @@ def test_what_cannot_be_is_refused():
         (lambda: Scene(box(), lights=[box()]), TypeError, "lights: expected lights, got Mesh"),
         (lambda: Scene([]), ValueError, "at least one face"),
         (lambda: Scene(box(), background=(-1, 0, 0)), ValueError, "background"),
+        # Single precision holds no more.
+        (lambda: Scene(box(), background=(1e39, 0, 0)), ValueError, "background"),
+        (lambda: Material(emission=(0, 1e39, 0)), ValueError, "emission"),
     ]:
         with pytest.raises(error, match=match):
             make()
