@@ -11,7 +11,7 @@
 
 use super::hash::{Key, mix32, permute};
 pub use super::primes::PRIMES;
-use super::sobol::Scramble;
+use super::sobol::{Scramble, shuffled};
 use crate::dispatch;
 use crate::math::exact::two_product;
 use crate::parallel::{self, Interrupted, Rows, Watch};
@@ -76,11 +76,13 @@ fn below_one<T: Real>(x: f64) -> T {
 
 /// Coordinate `dimension` of point `index`, scrambled by nested permutations of the key's own.
 ///
-/// `dimension` is taken modulo the number of primes.
+/// Where primes run out they come again, scrambled anew, for the points in another order: numbers of one base would else
+/// keep step.
 #[inline(always)]
 pub fn scrambled<T: Real>(key: Key, index: u32, dimension: u32) -> T {
-    let dimension = dimension as usize % PRIMES.len();
-    let (base, key) = (PRIMES[dimension], key.at(dimension as u64));
+    let round = dimension / PRIMES.len() as u32;
+    let index = if round == 0 { index } else { shuffled(key.at(u64::from(round) << 32), index) };
+    let (base, key) = (PRIMES[dimension as usize % PRIMES.len()], key.at(u64::from(dimension)));
     if base == 2 {
         return Scramble::keyed(key).fraction(index.reverse_bits());
     }

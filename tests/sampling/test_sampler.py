@@ -114,3 +114,19 @@ def test_pairs_of_the_golden_ratio_know_nothing_of_each_other():
     means = np.cos(2 * np.pi * (u[..., 0] - u[..., 1])).mean(1)
     # √½ over 8 if they are independent; √½ if they ran alike.
     assert means.std() < 1.3 * np.sqrt(0.5) / 8
+
+
+def test_halton_numbers_of_one_prime_do_not_keep_step():
+    """Dimension d + 1111 k has the base of d: numbers of the same sample are nevertheless independent."""
+    sample = np.arange(1024)
+    for d in (0, 3, 40):
+        first, *later = (
+            np.stack([sl.sampling.Sampler("halton", seed=s).uniform(0, sample, d + 1111 * k) for s in range(32)])
+            for k in range(3)
+        )
+        for other in later:
+            products = (first * other).mean(1)
+            error = products.std(ddof=1) / np.sqrt(32)
+            assert abs(products.mean() - 0.25) < 5 * error + 1e-4
+            # As little alike as independent numbers: 7/144 is the variance of a product.
+            assert products.std() < 2 * np.sqrt(7 / 144 / 1024)

@@ -164,8 +164,9 @@ class Sampler:
     -----
     Pixels are independent of each other. Within a pixel the dimensions come in pairs (0, 1), (2, 3) …: each pair is a
     good point set of the square over the samples, and pairs are combined at random; "latin_hypercube" combines all
-    dimensions at random, and "halton" goes through 1,111 dimensions together (and around again from there). Every
-    number is uniform by itself, so averages are unbiased. "independent" is `Generator`, "halton" in pixel 0 `halton`.
+    dimensions at random, and "halton" goes through 1,111 dimensions together (and again from there, in another order).
+    Every number is uniform by itself, so averages are unbiased. "independent" is `Generator`, "halton" in pixel 0
+    `halton`.
 
     References
     ----------
