@@ -142,4 +142,6 @@ def test_seams_do_not_leak_without_a_border(dtype):
     rng = np.random.default_rng(3)
     away = rng.uniform(-1.5, 1.5, (20_000, 3))
     away[:, 0] = np.abs(away[:, 1]) * rng.choice([-1, 1], 20_000)
+    # Within the inner box it is light.
+    away = away[np.abs(away).max(-1) > 0.3]
     assert sl.shadow.hard(cube, (place + away).astype(dtype)).max() == 0.0

@@ -137,9 +137,9 @@ def test_errors_name_the_argument(scenes):
     with pytest.raises(ValueError, match="cull"):
         sl.shadow.shadow_map(p, f, light, cull="both")
     with pytest.raises(ValueError, match="window: expected left < right"):
-        sl.shadow.ShadowMap(np.ones((2, 2)), "perspective", [0, 4, 0], np.eye(3), [1, 1, -1, 1], 1, 2)
+        sl.shadow.ShadowMap(np.ones((2, 2)), "perspective", [0, 4, 0], np.diag([1, 1, -1]), [1, 1, -1, 1], 1, 2)
     with pytest.raises(ValueError, match="depth: expected shape"):
-        sl.shadow.ShadowMap(np.ones(4), "perspective", [0, 4, 0], np.eye(3), [-1, 1, -1, 1], 1, 2)
+        sl.shadow.ShadowMap(np.ones(4), "perspective", [0, 4, 0], np.diag([1, 1, -1]), [-1, 1, -1, 1], 1, 2)
 
 
 @pytest.mark.parametrize("kind", KINDS)
@@ -162,7 +162,7 @@ def test_what_is_not_finite(scenes, kind):
 
 
 def test_maps_that_are_none_are_refused():
-    def made(depth=((1.0, np.inf),), kind="perspective", frame=((1, 0, 0), (0, 1, 0), (0, 0, 1)), near=1.0, far=2.0):
+    def made(depth=((1.0, np.inf),), kind="perspective", frame=((1, 0, 0), (0, 1, 0), (0, 0, -1)), near=1.0, far=2.0):
         return sl.shadow.ShadowMap(depth, kind, [0, 4, 0], frame, [-1, 1, -1, 1], near, far)
 
     made(), made(near=0.0, far=0.0), made(kind="orthographic", near=-1.0)
