@@ -110,6 +110,20 @@ def test_a_light_to_both_sides_is_traced():
     assert plan.find("shadow").settings["technique"] == "ray_traced"
 
 
+def test_a_light_close_to_surfaces_is_traced():
+    """A panel that stands on the floor: a map from its middle sees little of what hides its edges."""
+    panel = RectLight((0, 0.6, 0), (1.6, 0, 0), (0, 1, 0), (6, 6, 6))
+    ball = Instance(sl.mesh.icosphere(2, 0.25), sl.transform.translate([0.3, 0.25, 1.0]))
+    plan = sl.plan(Scene([GROUND, ball], panel, CAMERA))
+    assert plan.find("shadow").settings == {"technique": "ray_traced", "samples": 16}
+    assert "come as near to the light (0.6) as it is wide (1.9)" in plan.find("shadow").reason
+    # A surface behind it, or far before it, does not count.
+    above = replace(AREA, center=(0, 4.001, 0))
+    ceiling = Instance(sl.mesh.plane(8.0), sl.transform.translate([0, 4.002, 0]))
+    plan = sl.plan(Scene([GROUND, BOX, ceiling], above, CAMERA))
+    assert plan.find("shadow").settings["technique"] == "pcss"
+
+
 def test_background_and_emission_get_passes_where_there_are_any():
     glow = Instance(sl.mesh.box(), sl.transform.translate([0, 1.0, 0]), Material(emission=(1, 0, 0)))
     plan = sl.plan(Scene([GROUND, glow], (), CAMERA, background=(0.1, 0.1, 0.1)))

@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from .. import _arrays, light, raster, shadow
+from .. import _arrays, geometry, light, raster, shadow
 
 RESOLUTIONS = (256, 512, 1024, 2048)
 
@@ -168,6 +168,28 @@ def beyond_one_map(lamp: Any, facts: Facts) -> str:
         if (along <= length * math.cos(math.radians(65.0))).any():
             return "the light stands close to or within the scene, and one map cannot see all around"
     return ""
+
+
+def too_close(lamp: Any, facts: Facts) -> str:
+    """Why what a light's middle sees says little of what all of it does; empty if it may."""
+    corners = np.asarray(outline(lamp))
+    middle = np.asarray(lamp.center) if hasattr(lamp, "center") else corners.mean(0)
+    reach = lamp.radius if hasattr(lamp, "radius") else np.linalg.norm(corners - middle, axis=-1).max()
+    across = 2.0 * float(reach)
+    at = facts.positions[facts.faces]
+    plane = flat(lamp)
+    if plane is not None:
+        depths = (at - plane[0]) @ plane[1]
+        at = at[((np.abs(depths) if lamp.two_sided else depths) > 1e-6 * facts.extent).any(-1)]
+    if not len(at):
+        return ""
+    nearest = float(geometry.closest_point_triangle(middle, *np.moveaxis(at, 1, 0), full_output=True).distance.min())
+    if nearest >= across:
+        return ""
+    return (
+        f"surfaces come as near to the light ({nearest:.2g}) as it is wide ({across:.2g}): a map from its middle does "
+        "not see what they hide"
+    )
 
 
 def widest_penumbra(lamp: Any, facts: Facts) -> float:

@@ -10,7 +10,7 @@ import numpy as np
 
 from .. import _arrays, light, shadow
 from ._buffers import g_buffer
-from ._facts import RESOLUTIONS, Facts, beyond_one_map, outline, resolution_for, widest_penumbra
+from ._facts import RESOLUTIONS, Facts, beyond_one_map, outline, resolution_for, too_close, widest_penumbra
 from .passes import LeftOut, Pass
 
 # Rays of each pixel into the hemisphere, and the most towards a light.
@@ -158,6 +158,9 @@ def shadow_passes(
         technique, settings, reason = measured
     elif beyond:
         technique, reason = "ray_traced", ""
+    elif close := too_close(lamp, facts):
+        samples, expected = _rays(soft, bounds)
+        technique, settings, reason = "ray_traced", {"samples": samples}, f"{close}; {expected}"
     elif bounds:
         raise ValueError("evidence: expected the result of a study beside max_error or budget_ms, for soft shadows")
     else:
