@@ -68,12 +68,14 @@ def whitted(
 
     Notes
     -----
-    Area lights are asked at one point (their middle by their own parametrisation) and so cast sharp shadows; emitting
-    faces and panoramas are seen, and shine on nothing. Bodies of glass cast shadows as if they were opaque. Smooth
-    conductors, smooth interfaces and materials of roughness 0 are mirrors here; rough ones show the lights alone. In
-    glass each surface sends two rays, so time may double with each of `max_depth`; `cutoff` bounds it, at an error of
-    at most its size for each branch left out. Camera rays start at the lens where there is one; moving things are seen
-    at times of the shutter, but one sample of each is a noisy lot: see `distribution`.
+    Area lights are asked at one point (their middle by their own parametrisation) and so cast sharp shadows;
+    emitting faces and panoramas are seen, and shine on nothing. Bodies of glass cast shadows as if they were
+    opaque. Smooth conductors, smooth interfaces and `Material` or `MetallicRoughness` (without compensation) of
+    roughness 0 are mirrors here; all others, plastic's coat and the other models at roughness 0 among them, show
+    the lights alone. In glass each surface sends two rays, so time may double with each of `max_depth`; `cutoff`
+    bounds it, at an error of at most its size for each branch left out. Camera rays start at the lens where there
+    is one; moving things are seen at times of the shutter, but one sample of each is a noisy lot: see
+    `distribution`.
 
     References
     ----------
@@ -135,11 +137,13 @@ def distribution(
 
     Notes
     -----
-    Unbiased for what it computes: light from the lights, from emitting faces and panoramas, reflected once by anything
-    and before that by mirrors, rough or smooth, up to `max_depth` times. Glossy lobes and lights are both drawn from,
-    and weighed by the power heuristic. Light that diffusers send each other is missing: a closed room is darker than
-    `path_trace` makes it, and shadows without any light are black. Samples are independent: the error falls as
-    1/√samples. Things that move are traced at up to 64 moments a run, which all pixels share.
+    Unbiased for what it computes: light from the lights, from emitting faces and panoramas, reflected once by
+    anything and before that by mirrors, rough or smooth, up to `max_depth` times. Glossy lobes and lights are both
+    drawn from, and weighed by the power heuristic. Light that diffusers send each other is missing, if they are of
+    `Diffuse`, `Material` or `MetallicRoughness` without compensation (of other models the diffuse part counts as
+    gloss, and sends it on): a closed room is darker than `path_trace` makes it, and shadows without any light are
+    black. Samples are independent: the error falls as 1/√samples. Things that move are traced at up to 64 moments a
+    run, which all pixels share.
 
     References
     ----------
