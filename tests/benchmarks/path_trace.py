@@ -4,6 +4,7 @@ Errors are against one converged picture of Mitsuba's in two independent halves 
 its own noise drops out; efficiency is one over error² · time. Mitsuba runs in processes of its own, its kernels
 compiled before they are timed. Our own independent numbers tell the causes apart: time a sample (speed), error of ours
 to theirs with independent numbers (how lights are looked for), and of scrambled points to independent ones (points).
+Each has the roulette that is its default, from the second surface on here and from the fifth there, and equal depths.
 
 python tests/benchmarks/path_trace.py [--size 256] [--samples 64] [--converged 1024] [--only equal constant …]
 
