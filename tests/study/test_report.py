@@ -67,6 +67,12 @@ def test_pictures_and_figures_lie_beside(directory, measured):
     assert {"reference.png", "reference.exr", "mask.png", "noisy-samples-16.png", "noisy-samples-16.exr"} <= pictures
     assert {"noisy-samples-16-difference.png", "noisy-samples-16-map.png"} <= pictures
     rows = list(csv.DictReader((directory / "figures.csv").open()))
+    for scene in {r["scene"] for r in rows}:
+        fronted = {s.setting for s in measured.front(scene)}
+        assert fronted and {r["on_front"] for r in rows} <= {"0", "1"}
+        marked = [r for r in rows if r["scene"] == scene and r["on_front"] == "1"]
+        cases = sum(c.scene == scene for c in measured.cases)
+        assert len(marked) == cases * len(fronted)
     assert len(rows) == len(measured.records) == 8
     assert float(rows[0]["error"]) == measured.records[0].error.value
     assert json.loads((directory / "figures.json").read_text())["schema"] == 1

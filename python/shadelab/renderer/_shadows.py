@@ -167,7 +167,7 @@ def shadow_passes(
         technique, settings = "pcss", {"blocker_samples": 16, "filter_samples": 32}
         known = math.isfinite(width) and footprint > 0
         reason = "an area light, with penumbrae " + (
-            f"of {width / footprint:.0f} pixels and more" if known else "that nothing bounds"
+            f"of at most {width / footprint:.0f} pixels" if known else "that nothing bounds"
         )
         reason += "; its error is not measured: a study's evidence tells it"
 

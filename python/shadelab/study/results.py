@@ -381,7 +381,8 @@ class Study:
         )
 
     def to_csv(self, path: str | Path) -> Path:
-        """Write one line for each setting in each case."""
+        """Write one line for each setting in each case, and whether it is on the front of its own scene."""
+        fronts = {scene: {s.setting for s in self.front(scene)} for scene in {c.scene for c in self.cases}}
         knobs = sorted({k for r in self.records for k in r.knobs})
         counters = sorted({k for r in self.records for k in r.counters})
         also = list(dict.fromkeys(k for r in self.records for k in r.also))
@@ -391,13 +392,14 @@ class Study:
         with path.open("w", newline="", encoding="utf-8") as file:
             out = csv.writer(file)
             head = ["scene", "view", "technique", *knobs, "metric", "mask", "error", "error_low", "error_high", *plain]
-            out.writerow([*head, *also, "ms", "ms_low", "ms_high", *times, *counters])
+            out.writerow([*head, *also, "ms", "ms_low", "ms_high", *times, *counters, "on_front"])
             for r in self.records:
                 row: list[Any] = [r.scene, r.view, r.technique, *(r.knobs.get(k, "") for k in knobs)]
                 row += [self.metric["name"], self.mask["name"], r.error.value, r.error.low, r.error.high]
                 row += [getattr(r, k) for k in plain] + [r.also.get(k, "") for k in also]
                 row += [r.ms.value, r.ms.low, r.ms.high] + [getattr(r, k) for k in times]
-                out.writerow(row + [r.counters.get(k, "") for k in counters])
+                row += [r.counters.get(k, "") for k in counters]
+                out.writerow([*row, int(r.setting in fronts[r.scene])])
         return path
 
 
