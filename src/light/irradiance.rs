@@ -29,7 +29,7 @@ fn of_sides(to: Vec3<f64>, normal: Vec3<f64>, two_sided: bool, moments: impl Fn(
 }
 
 /// ∫ cosⁿθ dω for n = 0 … 6 over what is seen of an area light above the horizon of a point with a unit normal.
-#[inline(always)]
+#[inline(never)]
 pub fn moments<T: Real>(light: &Light<T>, point: Vec3<T>, normal: Vec3<T>) -> Moments {
     area(light, point, normal, |circle| circle.moments(), polygon::moments)
 }

@@ -97,10 +97,11 @@ pub struct Arrival<T> {
     pub pdf: T,
 }
 
+// What tells lights apart is scalar, and compiled once a precision rather than at every place that asks.
 impl<T: Real> Light<T> {
     /// What a punctual light sends to `point`; none from area lights, or from a light at the point
     /// itself, or so near that it overflows.
-    #[inline(always)]
+    #[inline(never)]
     pub fn beam(&self, point: Vec3<T>) -> Option<Beam<T>> {
         match self {
             Light::Point { position, intensity } => from_point(*position, *intensity, point),
@@ -164,7 +165,7 @@ impl<T: Real> Light<T> {
 
     /// A direction towards an area light, for a point of the unit square; None from where the drawn point does not
     /// shine, and for punctual lights.
-    #[inline(always)]
+    #[inline(never)]
     pub fn sight(&self, from: Vec3<T>, u: [T; 2]) -> Option<Sighting<T>> {
         match self {
             Light::Rect(l) => l.sample(from, u),
@@ -178,7 +179,7 @@ impl<T: Real> Light<T> {
     }
 
     /// Where a ray with unit direction meets an area light that shines against it, with the density of [`Light::sight`].
-    #[inline(always)]
+    #[inline(never)]
     pub fn meet(&self, from: Vec3<T>, wi: Vec3<T>) -> Option<Sighting<T>> {
         match self {
             Light::Rect(l) => l.meet(from, wi),

@@ -105,9 +105,23 @@ pub fn digits(start: u32, count: u32) -> Vec<[u32; 3]> {
 }
 
 impl<T: Real> Receiver<T> {
-    /// Radiance towards the eye from one light.
-    #[inline(always)]
+    /// Radiance towards the eye from one light. Enters the level anew, so that it is compiled once a level and precision.
+    #[inline(never)]
     pub fn unshadowed<S: Simd>(
+        &self,
+        light: &Light<T>,
+        stream: u64,
+        mirrors: Mirrors<'_>,
+        desk: &mut Desk<S>,
+    ) -> Vec3<T> {
+        desk.token.vectorize(
+            #[inline(always)]
+            || self.unshadowed_here(light, stream, mirrors, desk),
+        )
+    }
+
+    #[inline(always)]
+    fn unshadowed_here<S: Simd>(
         &self,
         light: &Light<T>,
         stream: u64,
@@ -249,7 +263,7 @@ impl<T: Real> Receiver<T> {
     }
 
     /// The mirrors' part, or the whole, by sampling the light and the lobe.
-    #[inline(always)]
+    #[inline(never)]
     fn sampled(&self, light: &Light<T>, stream: u64, seed: u64, digits: &[[u32; 3]], whole: bool) -> Vec3<T> {
         let none = (self.point + self.wo) * T::zero();
         if !(whole || self.lobes.is_specular()) || self.wo.z <= T::zero() || digits.is_empty() {

@@ -62,23 +62,7 @@ pub fn draw<T: Real>(
     let screen = Screen::new(options.width, options.height, options.depth);
     let grid = Grid::new(options, samples);
 
-    // Snap vertices.
-    let mut snapped = vec![[0i32; 2]; clip.len()];
-    parallel::for_each(
-        watch,
-        (clip, &mut snapped[..]),
-        VERTICES,
-        |_, (clip, snapped)| dispatch!(_s => snap(&screen, clip, snapped)),
-    )?;
-
-    // Bin triangles, in chunks small enough to balance and large enough that their tables of tiles are cheap.
-    let chunk = (faces.len() / 64).clamp(1 << 10, 1 << 15);
-    let mut bins: Vec<Bins> = Vec::new();
-    bins.resize_with(faces.len().div_ceil(chunk), Bins::default);
-    parallel::for_each(watch, &mut bins[..], 1, |i, bins| {
-        let faces = &faces[i * chunk..faces.len().min((i + 1) * chunk)];
-        dispatch!(_s => bin::bin(&screen, &grid, clip, &snapped, faces, i * chunk, &mut bins[0]))
-    })?;
+    let (snapped, bins) = binned(watch, clip, faces, &screen, &grid)?;
 
     // Draw and resolve tiles. Their buffers wait in a pool, since a tile is far cheaper than fresh memory.
     let scene = Scene { screen: &screen, grid: &grid, clip, snapped: &snapped, faces, bins: &bins };
@@ -92,6 +76,34 @@ pub fn draw<T: Real>(
         dispatch!(s => draw_tile(s, &mut tile, index, &scene, resolve));
         idle.lock().unwrap_or_else(PoisonError::into_inner).push(tile);
     })
+}
+
+/// Vertices snapped and triangles binned: compiled once a precision, whatever becomes of tiles.
+fn binned<T: Real>(
+    watch: &mut dyn Watch,
+    clip: &[[T; 4]],
+    faces: &[[i32; 3]],
+    screen: &Screen,
+    grid: &Grid,
+) -> Result<(Vec<[i32; 2]>, Vec<Bins>), Interrupted> {
+    // Snap vertices.
+    let mut snapped = vec![[0i32; 2]; clip.len()];
+    parallel::for_each(
+        watch,
+        (clip, &mut snapped[..]),
+        VERTICES,
+        |_, (clip, snapped)| dispatch!(_s => snap(screen, clip, snapped)),
+    )?;
+
+    // Bin triangles, in chunks small enough to balance and large enough that their tables of tiles are cheap.
+    let chunk = (faces.len() / 64).clamp(1 << 10, 1 << 15);
+    let mut bins: Vec<Bins> = Vec::new();
+    bins.resize_with(faces.len().div_ceil(chunk), Bins::default);
+    parallel::for_each(watch, &mut bins[..], 1, |i, bins| {
+        let faces = &faces[i * chunk..faces.len().min((i + 1) * chunk)];
+        dispatch!(_s => bin::bin(screen, grid, clip, &snapped, faces, i * chunk, &mut bins[0]))
+    })?;
+    Ok((snapped, bins))
 }
 
 #[inline(always)]

@@ -123,8 +123,18 @@ impl<T: Real> Tile<T> {
     }
 
     /// Draws all triangles of tile `index`, which was cleared.
-    #[inline(always)]
+    ///
+    /// Enters the level anew: compiled once a level and precision, whatever becomes of the tile.
+    #[inline(never)]
     pub fn draw<S: Simd, const BEHIND: bool>(&mut self, s: S, index: usize, scene: &Scene<T>) {
+        s.vectorize(
+            #[inline(always)]
+            || self.draw_here::<S, BEHIND>(s, index, scene),
+        )
+    }
+
+    #[inline(always)]
+    fn draw_here<S: Simd, const BEHIND: bool>(&mut self, s: S, index: usize, scene: &Scene<T>) {
         let mut batch = Batch { triangles: [Small::default(); LANES], len: 0 };
         for bins in scene.bins {
             for &entry in bins.entries(index) {

@@ -180,7 +180,7 @@ impl<T: Real> Site<'_, T> {
 
     /// An average over directions drawn for the source and, unless the lobe is dim beside the source's density
     /// `brightest` (by the density alone, so without bias), for the model; what is specular is found by the model alone.
-    #[inline(always)]
+    #[inline(never)]
     fn sampled(&self, source: Source<'_, T>, stream: u64, sampling: &Sampling<'_>, brightest: T) -> Vec3<T> {
         let (zero, one) = (T::zero(), T::one());
         let mut sum = (self.point + self.wo) * zero;

@@ -35,8 +35,17 @@ pub struct Granted<T> {
 
 impl<T: Real> Test<T> {
     /// The most of the light that receivers at `t` may see, and the mean of the blockers' depths (t without any).
-    #[inline(always)]
+    /// Enters the level anew: this is compiled once for all formats of moments.
+    #[inline(never)]
     pub fn blockers<S: Simd>(&self, s: S, m: [T::V8<S>; 4], t: T::V8<S>) -> (T::V8<S>, T::V8<S>) {
+        s.vectorize(
+            #[inline(always)]
+            || self.blockers_here(s, m, t),
+        )
+    }
+
+    #[inline(always)]
+    fn blockers_here<S: Simd>(&self, s: S, m: [T::V8<S>; 4], t: T::V8<S>) -> (T::V8<S>, T::V8<S>) {
         let one = all::<T, S>(s, T::one());
         let lit = match *self {
             Test::Variance { least } => chebyshev_bound(m[0], m[1], t, all::<T, S>(s, least)),
@@ -131,9 +140,26 @@ pub fn tested<T: Real, E: Stored, S: Simd, const C: usize>(
 }
 
 /// Of a lot of receivers from `i` on, of which those `asked` look into this map: where they fall, how much depth they
-/// gain over a texel, and a bit for each that lies on the map.
-#[inline(always)]
+/// gain over a texel, and a bit for each that lies on the map. Enters the level anew, as [`Test::blockers`].
+#[inline(never)]
 pub fn placed<T: Real, S: Simd>(
+    s: S,
+    map: &Map<'_, T>,
+    perspective: bool,
+    points: &[[T; 3]],
+    normals: Option<&[[T; 3]]>,
+    i: usize,
+    asked: u64,
+    normal_offset: T,
+) -> (Feet<T::V8<S>>, [T::V8<S>; 2], u64) {
+    s.vectorize(
+        #[inline(always)]
+        || placed_here(s, map, perspective, points, normals, i, asked, normal_offset),
+    )
+}
+
+#[inline(always)]
+fn placed_here<T: Real, S: Simd>(
     s: S,
     map: &Map<'_, T>,
     perspective: bool,

@@ -35,6 +35,7 @@ pub trait Tree: Sync {
 }
 
 /// At most eight parts.
+#[derive(Clone, Copy)]
 pub struct Front<P> {
     parts: [Option<P>; WIDTH],
     len: usize,
@@ -104,7 +105,11 @@ struct Plan<P> {
     nodes: usize,
     blocks: usize,
     below: Vec<Plan<P>>,
+    /// The children of each node that one thread writes, in the order of depth: to find them costs more than to keep them.
+    fronts: Vec<Front<P>>,
 }
+
+type Fronts<'a, P> = std::slice::Iter<'a, Front<P>>;
 
 /// The wide tree below `root`.
 pub fn collapse<T: Real, B: Tree>(
@@ -209,32 +214,32 @@ impl<T: Real, B: Tree> Mesh<'_, T, B> {
     fn plan(&self, part: B::Part) -> Plan<B::Part> {
         let (_, count, leaf) = self.tree.span(part);
         if leaf || count <= TASK {
-            let (nodes, blocks) = self.measure(part);
-            return Plan { part, nodes, blocks, below: vec![] };
+            let mut fronts = Vec::with_capacity(count / (2 * BLOCK));
+            let blocks = self.measure(part, &mut fronts);
+            return Plan { part, nodes: fronts.len(), blocks, below: vec![], fronts };
         }
         let parts: Vec<_> = self.tree.front(part).parts().collect();
         let below: Vec<_> = parts.into_par_iter().map(|p| self.plan(p)).collect();
         let nodes = 1 + below.iter().map(|p| p.nodes).sum::<usize>();
-        Plan { part, nodes, blocks: below.iter().map(|p| p.blocks).sum(), below }
+        Plan { part, nodes, blocks: below.iter().map(|p| p.blocks).sum(), below, fronts: vec![] }
     }
 
-    /// Nodes and blocks of a part.
-    fn measure(&self, part: B::Part) -> (usize, usize) {
+    /// Blocks of a part; its nodes' children go into a list.
+    fn measure(&self, part: B::Part, fronts: &mut Vec<Front<B::Part>>) -> usize {
         let (_, count, leaf) = self.tree.span(part);
         if leaf {
-            return (0, count.div_ceil(BLOCK));
+            return count.div_ceil(BLOCK);
         }
-        self.tree.front(part).parts().fold((1, 0), |(nodes, blocks), p| {
-            let (n, b) = self.measure(p);
-            (nodes + n, blocks + b)
-        })
+        let front = self.tree.front(part);
+        fronts.push(front);
+        front.parts().map(|p| self.measure(p, fronts)).sum()
     }
 
     /// Writes a part as planned; what refers to it, and its box.
     fn emit(&self, plan: &Plan<B::Part>, out: Stretch<T>) -> (Child, Corners<T>) {
         if plan.below.is_empty() {
             let mut out = out;
-            return self.emit_part(plan.part, &mut out);
+            return self.emit_part(plan.part, &mut plan.fronts.iter(), &mut out);
         }
         let me = out.node;
         let (place, out) = out.node();
@@ -251,7 +256,12 @@ impl<T: Real, B: Tree> Mesh<'_, T, B> {
     }
 
     /// The same by one thread, which takes from the stretch what it needs.
-    fn emit_part(&self, part: B::Part, out: &mut Stretch<T>) -> (Child, Corners<T>) {
+    fn emit_part(
+        &self,
+        part: B::Part,
+        fronts: &mut Fronts<B::Part>,
+        out: &mut Stretch<T>,
+    ) -> (Child, Corners<T>) {
         let (first, count, leaf) = self.tree.span(part);
         if leaf {
             return self.emit_leaf(first, count, out);
@@ -260,8 +270,9 @@ impl<T: Real, B: Tree> Mesh<'_, T, B> {
         let (place, rest) = std::mem::take(&mut out.nodes).split_first_mut().expect("as long as planned");
         (out.nodes, out.node) = (rest, me + 1);
         let (mut node, mut all) = (Node::empty(), nothing());
-        for (slot, part) in self.tree.front(part).parts().enumerate() {
-            let (child, corners) = self.emit_part(part, out);
+        let front = fronts.next().expect("as many as planned");
+        for (slot, part) in front.parts().enumerate() {
+            let (child, corners) = self.emit_part(part, fronts, out);
             node.set(slot, child, corners);
             grow(&mut all, &corners);
         }

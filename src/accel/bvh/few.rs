@@ -101,39 +101,52 @@ impl<T: Real> Few<T> {
             if lanes == 0 {
                 continue;
             }
-            let mut eight = *eight;
-            for l in lanes..8 {
-                eight[l] = eight[lanes - 1];
+            let eight = *eight;
+            let mut group = [rays.ray(eight[0]); 8];
+            for l in 1..lanes {
+                group[l] = rays.ray(eight[l & 7]);
             }
-            let hits = self.eight::<ANY, S>(
-                s,
-                bounds,
-                axis,
-                #[inline(always)]
-                |l| rays.ray(eight[l & 7]),
-            );
+            let hits = self.eight::<ANY, S>(s, bounds, axis, &group);
             for l in 0..lanes {
                 answer.put(eight[l & 7], hits.get(l));
             }
         }
     }
 
-    /// Eight rays of one dominant axis.
-    #[inline(always)]
+    /// Eight rays of one dominant axis. Enters the level anew: compiled once for all that gather rays.
+    #[inline(never)]
     fn eight<const ANY: bool, S: Simd>(
         &self,
         s: S,
         bounds: &[[T; 3]; 2],
         axis: usize,
-        rays: impl Fn(usize) -> Ray<T>,
+        rays: &[Ray<T>; 8],
+    ) -> Hits<T> {
+        s.vectorize(
+            #[inline(always)]
+            || self.eight_here::<ANY, S>(s, bounds, axis, rays),
+        )
+    }
+
+    #[inline(always)]
+    fn eight_here<const ANY: bool, S: Simd>(
+        &self,
+        s: S,
+        bounds: &[[T; 3]; 2],
+        axis: usize,
+        rays: &[Ray<T>; 8],
     ) -> Hits<T> {
         let zero = splat8::<T, S>(s, T::zero());
         let mut ignored = [T::zero(); 8];
         for l in 0..8 {
-            ignored[l] = T::of(rays(l).ignore_face as f64);
+            ignored[l] = T::of(rays[l].ignore_face as f64);
         }
         let ignored = load8(s, &ignored);
-        let Eight { origin, direction, t_min, t_max } = Eight::load(s, rays);
+        let Eight { origin, direction, t_min, t_max } = Eight::load(
+            s,
+            #[inline(always)]
+            |l| rays[l],
+        );
         let proper = proper(origin, direction, t_min, t_max);
         let heading = Heading { order: permutation(axis), negative: [0; 3] };
         let ray = prepare(bounds, origin, direction, t_min, t_max).ready(heading);

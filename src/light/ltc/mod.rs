@@ -86,7 +86,7 @@ pub fn mirrored_picture<T: Real, S: Simd>(
 }
 
 /// The mean radiance that a cosine lobe about the frame's z sees of a rectangle that shows a picture.
-#[inline(always)]
+#[inline(never)]
 pub fn diffuse_picture<T: Real>(
     light: &Textured<T>,
     point: Vec3<f64>,
@@ -116,7 +116,7 @@ const ROUND: usize = 24;
 
 /// The corners of an area light as seen from a point, counter-clockwise from its shining side, into `corners`; false where
 /// it does not shine, or is no polygon. Disks, and spheres as the disks of their rims, become polygons of equal area.
-#[inline(always)]
+#[inline(never)]
 pub fn outline<T: Real>(light: &Light<T>, point: Vec3<f64>, corners: &mut Vec<Vec3<f64>>) -> bool {
     corners.clear();
     let (to, normal, two_sided) = match light {

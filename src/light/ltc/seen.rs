@@ -86,9 +86,24 @@ fn clip(corners: &[Vec3<f64>], out: &mut Vec<Vec3<f64>>) {
 }
 
 /// What each of two lobes sees of a polygon, given from the point and seen in a frame of normal and eye: the vectors of
-/// [`whole`], straightened. `scratch` holds corners on the way.
-#[inline(always)]
+/// [`whole`], straightened. `scratch` holds corners on the way. Enters the level anew,
+/// so that it is compiled once a level.
+#[inline(never)]
 pub fn seen<S: Simd>(
+    s: S,
+    lobes: &[Lobe; 2],
+    corners: &[Vec3<f64>],
+    frame: &Frame<f64>,
+    scratch: &mut [Vec<Vec3<f64>>; 3],
+) -> [Vec3<f64>; 2] {
+    s.vectorize(
+        #[inline(always)]
+        || seen_here(s, lobes, corners, frame, scratch),
+    )
+}
+
+#[inline(always)]
+fn seen_here<S: Simd>(
     s: S,
     lobes: &[Lobe; 2],
     corners: &[Vec3<f64>],

@@ -47,9 +47,17 @@ pub struct Packet<T: Real, S: Simd> {
 }
 
 impl<T: Real, S: Simd> Packet<T, S> {
-    /// Traces the rays.
-    #[inline(always)]
+    /// Traces the rays. Enters the level anew: compiled once for all that gather packets.
+    #[inline(never)]
     pub fn trace<const ANY: bool>(&mut self, s: S, tree: &Bvh<T>) {
+        s.vectorize(
+            #[inline(always)]
+            || self.trace_here::<ANY>(s, tree),
+        )
+    }
+
+    #[inline(always)]
+    fn trace_here<const ANY: bool>(&mut self, s: S, tree: &Bvh<T>) {
         black_box(&mut *self);
         let mut end = self.end();
         let (mut turn, mut credit) = (0u32, 0u32);
