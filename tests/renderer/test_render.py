@@ -3,6 +3,7 @@
 import io
 import warnings
 from dataclasses import replace
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
@@ -41,7 +42,8 @@ def test_buffers_agree_with_rays(frame):
 
 
 def test_unshadowed_light_is_that_of_the_closed_form(frame):
-    lit = (frame.lit[0] == 1) & (frame.face >= 0)
+    # Filters of moments leave traces of shadow everywhere.
+    lit = (frame.lit[0] > 0.995) & (frame.face >= 0)
     assert lit.mean() > 0.2
     expected = sl.light.unshadowed(
         AREA, frame.position[lit], frame.normal[lit], MATTE.base_color, 0.0, 1.0, eye=CAMERA.eye, samples=1024
@@ -73,7 +75,10 @@ def test_shadowed_light_is_about_that_of_rays(frame):
 def test_soft_shadows_of_the_default_scene_are_about_those_of_rays():
     # Casters near and far from the light: a blocker search that misses some leaks light into the umbrae.
     scene, size = sl.scene.default(), (320, 180)
-    soft = sl.render(scene, size=size)
+    knobs = {"resolution": 1024, "blocker_samples": 16, "filter_samples": 32}
+    choice = SimpleNamespace(technique="pcss", knobs=knobs, error=0.1, ms=1.0)
+    evidence = SimpleNamespace(pick=lambda **bounds: choice)
+    soft = sl.render(scene, sl.plan(scene, size, max_error=0.1, evidence=evidence))
     assert soft.plan.find("shadow").settings["technique"] == "pcss"
     kept = [p for p in soft.plan.passes if not p.name.startswith("shadow")]
     rays = sl.renderer.Pass("shadow", "the reference", {"technique": "ray_traced", "samples": 64})
@@ -147,11 +152,11 @@ def test_the_same_seed_gives_the_same_bits_whatever_the_threads():
     try:
         for n in (1, 3):
             sl.set_threads(n)
-            frames.append(sl.render(scene, size=SIZE, seed=4))
+            frames.append(sl.render(scene, sl.plan(scene, SIZE, max_error=0.04), seed=4))
     finally:
         sl.set_threads(before)
-    assert np.array_equal(frames[0].radiance, frames[1].radiance)
-    assert not np.array_equal(frames[0].radiance, sl.render(scene, size=SIZE, seed=5).radiance)
+    assert np.array_equal(frames[0].radiance, frames[1].radiance) and str(frames[0].plan) == str(frames[1].plan)
+    assert not np.array_equal(frames[0].radiance, sl.render(scene, frames[0].plan, seed=5).radiance)
 
 
 def test_shows_itself_as_a_picture(frame, tmp_path):

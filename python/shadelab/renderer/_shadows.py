@@ -3,19 +3,21 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Mapping
+from collections.abc import Mapping
 from typing import Any
 
 import numpy as np
 
 from .. import _arrays, light, shadow
-from ._buffers import g_buffer
-from ._facts import RESOLUTIONS, Facts, beyond_one_map, outline, resolution_for, too_close, widest_penumbra
+from ._facts import RESOLUTIONS, Facts, beyond_one_map, flat, outline, resolution_for, too_close, widest_penumbra
+from ._options import Option, chosen, least_rays, of_rays, price_of, priced, sharp, soft, virtual
+from ._trials import OfLight, Trial
 from .passes import LeftOut, Pass
 
-# Rays of each pixel into the hemisphere, and the most towards a light.
-_OCCLUSION, _RAYS = 32, 4096
-_EDGES = "what is off is its edges, by the map's texels"
+# Rays of each pixel into the hemisphere, where no bound asks for fewer or more.
+_OCCLUSION = 32
+# The most rays towards a light whose penumbrae are narrower than a pixel.
+_SHARP_RAYS = 64
 _TECHNIQUES = (
     "hard", "pcf", "pcss", "variance", "exponential_variance", "moment", "variance_soft", "ray_traced",
 )  # fmt: skip
@@ -48,17 +50,8 @@ def picked(evidence: Any, max_error: float | None, budget_ms: float | None) -> t
 # How many pixels a texel may cover where a view is nearest before one map is no longer enough, the largest map, and the
 # most cascades. What filters read about a receiver must lie in its map.
 _COARSEST, _LARGEST, _MOST, _BORDER = 4.0, RESOLUTIONS[-1], 6, 8
-_LOOK = (96, 54)
-
-
-def seen_depths(arrays: Any, camera: Any) -> tuple[float, float] | None:
-    """The least and the greatest depth of what a camera sees; None if it sees nothing."""
-    seen = g_buffer(arrays, camera, _LOOK)
-    if not len(seen.points):
-        return None
-    forward = -np.asarray(camera.view(), np.float64)[2]
-    depth = seen.points @ forward[:3] + forward[3]
-    return float(depth.min()), float(depth.max())
+# Whole maps of which pages are drawn, and the sides of cubes.
+_VIRTUAL, _CUBES = (4096, 8192, 16384), (512, 1024, 2048)
 
 
 def parted(facts: Facts, view: tuple[float, float] | None, slope: float) -> tuple[dict[str, Any], str]:
@@ -102,97 +95,142 @@ def parted(facts: Facts, view: tuple[float, float] | None, slope: float) -> tupl
     return {"resolution": _LARGEST, "cascades": count, "near": near, "far": far}, reason
 
 
-def _rays(soft: bool, bounds: Mapping[str, float]) -> tuple[int, str]:
-    """How many rays a receiver, and the error that is expected of them.
-
-    The mean of n independent answers 0 or 1 has a deviation of at most 1/(2 √n); strata only lessen it.
-    """
-    if not soft:
-        return 1, "one ray is exact for a light without extent"
-    bound = bounds.get("max_error")
-    wanted = 16 if bound is None else math.ceil(0.25 / max(bound, 1e-9) ** 2 * (1.0 - 1e-9))
-    samples = min(max(wanted, 16), _RAYS)
-    said = (
-        f"expected error at most {0.5 / math.sqrt(samples):.2g}, the noise of {samples} rays half of which are hidden"
-    )
-    if wanted > samples:
-        said += f"; max_error {bound:g} is not kept: it would take {wanted} rays"
-    if "budget_ms" in bounds:
-        said += "; budget_ms is not kept: no time was measured for rays here"
-    return samples, said
-
-
 def shadow_passes(
     lamp: Any,
     suffix: str,
     facts: Facts,
     measured: tuple[str, dict[str, Any], str] | None,
     bounds: Mapping[str, float],
-    view: Callable[[], tuple[dict[str, Any], str]],
+    trial: Trial,
+    built: bool,
 ) -> tuple[list[Pass], list[LeftOut]]:
     """How the shadow of one light is found, for a light that reaches something.
 
-    `bounds` are max_error and budget_ms as far as they are asked for; `view` gives cascades, or one map's resolution.
+    `bounds` are max_error and budget_ms of this light's shadow as far as they are asked for; `built` tells whether
+    there is a tree for rays already.
     """
     if facts.unshadowed:
         return [], [LeftOut(f"shadow{suffix}", facts.unshadowed)]
+    price = price_of(trial.receivers, len(facts.faces), built)
     if isinstance(lamp, light.AmbientLight):
-        why = "it comes from everywhere: rays find what hides some of it, its occlusion"
+        where = OfLight(trial, lamp)
+        found = chosen(priced(of_rays(least_rays(bounds, _OCCLUSION)), price), where, bounds)
+        why = f"it comes from everywhere: rays find what hides some of it, its occlusion; {found.told}"
         none = LeftOut(f"shadow map{suffix}", "no map sees what comes from everywhere")
-        return [Pass(f"shadow{suffix}", why, {"technique": "ray_traced", "samples": _OCCLUSION})], [none]
+        return [Pass(f"shadow{suffix}", why, dict(found.option.how))], [none]
     left_out: list[LeftOut] = []
-    settings: dict[str, Any] = {}
-    width, footprint = 0.0, facts.nearest * facts.pixel
-    beyond = beyond_one_map(lamp, facts)
-    soft = outline(lamp) is not None
-    if soft:
-        width = widest_penumbra(lamp, facts)
-    if not soft:
-        technique, reason = "hard", f"the light has no extent: its shadows have no penumbra; {_EDGES}"
+    beyond, footprint = beyond_one_map(lamp, facts), facts.nearest * facts.pixel
+    wide = outline(lamp) is not None
+    if not wide:
+        reason = "the light has no extent: its shadows have no penumbra"
         left_out.append(LeftOut(f"penumbra{suffix}", "no area light: a hard shadow suffices"))
-    elif width < footprint:
-        technique = "hard"
-        reason = f"penumbrae are at most {width:.2g} wide, less than a pixel ({footprint:.2g}); {_EDGES}"
+    elif (width := widest_penumbra(lamp, facts)) < footprint:
+        wide = False
+        reason = f"penumbrae are at most {width:.2g} wide, less than a pixel ({footprint:.2g})"
         left_out.append(LeftOut(f"penumbra{suffix}", "narrower than a pixel: a hard shadow suffices"))
-    elif measured is not None:
-        technique, settings, reason = measured
-    elif beyond:
-        technique, reason = "ray_traced", ""
-    elif close := too_close(lamp, facts):
-        samples, expected = _rays(soft, bounds)
-        technique, settings, reason = "ray_traced", {"samples": samples}, f"{close}; {expected}"
-    elif bounds:
-        raise ValueError("evidence: expected the result of a study beside max_error or budget_ms, for soft shadows")
+    elif measured is not None and not (beyond and measured[0] != "ray_traced"):
+        return _as_measured(suffix, measured, facts)
     else:
-        technique, settings = "pcss", {"blocker_samples": 16, "filter_samples": 32}
-        known = math.isfinite(width) and footprint > 0
-        reason = "an area light, with penumbrae " + (
-            f"of at most {width / footprint:.0f} pixels" if known else "that nothing bounds"
-        )
-        reason += "; its error is not measured: a study's evidence tells it"
-
-    settings = dict(settings)
-    resolution = settings.pop("resolution", None)
-    if beyond and not (soft and measured is not None and technique == "ray_traced"):
-        samples, expected = _rays(soft, bounds)
-        technique, settings, reason = "ray_traced", {"samples": samples}, f"{beyond}; {expected}"
-    if technique == "ray_traced":
-        left_out.append(LeftOut(f"shadow map{suffix}", "rays need none"))
-        return [Pass(f"shadow{suffix}", reason, {"technique": technique, **settings})], left_out
-    if isinstance(lamp, light.DirectionalLight):
-        parts, why = view()
-        if "cascades" in parts:
-            return [
-                Pass(f"shadow map{suffix}", f"what the light sees, {why}", parts),
-                Pass(f"shadow{suffix}", reason, {"technique": technique, **settings}),
-            ], left_out
+        reason = ""
+    where = OfLight(trial, lamp, bounds.get("max_error", 1.0) < 0.05)
+    charts, why = _charts(lamp, facts, beyond, wide, where, bounds)
+    # One ray is exact for what has no extent.
+    sharpest = charts if bounds else charts[:1], bool(bounds), 1 if outline(lamp) is None else _SHARP_RAYS
+    if not wide:
+        pairs = sharp(*sharpest) or of_rays(1, 1)
+    elif not charts:
+        pairs = of_rays(least_rays(bounds))
+        reason = why
+    else:
+        alike = where.penumbrae(charts[0]) if where.edges else None
+        reason = _widths(alike, width, footprint)
+        if alike is not None and alike[2] < 1.0:
+            left_out.append(LeftOut(f"penumbra{suffix}", "narrower than a pixel: a hard shadow suffices"))
+            pairs = sharp(*sharpest)
+        else:
+            pairs = soft(charts, where, alike, least_rays(bounds))
+    found = chosen(priced(pairs, price), where, bounds)
+    if found.option.chart is not None and found.option.chart != charts[0]:
+        why = "of the maps that were tried, the one that the error or the budget asks for"
+    elif isinstance(lamp, light.DirectionalLight) and "cascades" not in charts[0]:
         left_out.append(LeftOut(f"cascades{suffix}", why))
-        resolution, why = parts["resolution"], "texels small enough for the nearest in view, if the resolution allows"
-    elif resolution is None:
-        resolution, why = resolution_for(facts), "texels of a pixel at the scene's middle, if the resolution allows"
+        why = "texels small enough for the nearest in view, if the resolution allows"
+    return _passes(suffix, found.option, f"{reason}; {found.told}", why, left_out)
+
+
+def _widths(alike: tuple[float, float, float, float] | None, width: float, footprint: float) -> str:
+    if alike is not None:
+        return (
+            f"an area light, whose penumbrae are {alike[0]:.2g} to {alike[1]:.2g} pixels wide, but for a fifth of them"
+        )
+    if math.isfinite(width) and footprint > 0:
+        return f"an area light, with penumbrae of at most {width / footprint:.0f} pixels"
+    return "an area light, with penumbrae that nothing bounds"
+
+
+def _charts(
+    lamp: Any, facts: Facts, beyond: str, wide: bool, where: OfLight, bounds: Mapping[str, float]
+) -> tuple[list[Mapping[str, Any]], str]:
+    """The maps that may serve, the first of which does if nothing else is asked for; and why that, or why none."""
+    bounded, budgeted = bool(bounds), "budget_ms" in bounds
+    if beyond:
+        if flat(lamp) is not None:
+            return [], beyond
+        cubes: list[Mapping[str, Any]] = [{"kind": "cube", "resolution": n} for n in _CUBES]
+        first = next((c for c in cubes[:-1] if where.texels(c) <= _COARSEST), cubes[-1])
+        said = f"{beyond}: six of them do, with texels at most {where.texels(first):.2g} pixels wide"
+        return [first, *(c for c in cubes if bounded and c != first)], said
+    if wide and (close := too_close(lamp, facts)):
+        return [], close
+    if isinstance(lamp, light.DirectionalLight):
+        depths = where.trial.depths
+        view = (float(depths.min()), float(depths.max())) if len(depths) else None
+        first_chart, said = parted(facts, view, where.trial.slope)
+        parts = "cascades" in first_chart
     else:
-        why = "the resolution that was measured"
-    return [
-        Pass(f"shadow map{suffix}", f"what the light sees; {why}", {"resolution": int(resolution)}),
-        Pass(f"shadow{suffix}", reason, {"technique": technique, **settings}),
-    ], left_out
+        least = resolution_for(facts)
+        first_chart, parts = {"resolution": least}, False
+        said = "texels of a pixel at the scene's middle, if the resolution allows"
+    charts: list[Mapping[str, Any]] = [first_chart]
+    if bounded:
+        # Wide filters want no fine texels, but a cheap map.
+        sides = RESOLUTIONS if not wide or budgeted else (_LARGEST,)
+        charts += [{"resolution": n} for n in sides if parts or n != first_chart["resolution"]]
+        if parts and first_chart["cascades"] < _MOST:
+            charts.append({**first_chart, "cascades": _MOST})
+    # Long views, of which the nearest is coarse in the largest map.
+    coarse = 0.0 if parts else where.texels({"resolution": _LARGEST})
+    if coarse > _COARSEST:
+        pages = [virtual(n, wide) for n in _VIRTUAL]
+        if wide:
+            charts += pages
+        else:
+            fine = next((p for p, n in zip(pages, _VIRTUAL, strict=True) if coarse * _LARGEST / n <= 1.0), pages[-1])
+            charts = [fine, *(pages if bounded else []), *charts]
+            said = f"texels of one map of {_LARGEST}² are {coarse:.2g} pixels wide: pages of a larger one"
+    return [c for i, c in enumerate(charts) if c not in charts[:i]], said
+
+
+def _as_measured(
+    suffix: str, measured: tuple[str, dict[str, Any], str], facts: Facts
+) -> tuple[list[Pass], list[LeftOut]]:
+    """As a study has it."""
+    technique, settings, reason = measured
+    how = {"technique": technique, **settings}
+    resolution = how.pop("resolution", None)
+    if technique == "ray_traced":
+        return _passes(suffix, Option(None, how, 0.0), reason, "", [])
+    why = "the resolution that was measured"
+    if resolution is None:
+        resolution, why = resolution_for(facts), "texels of a pixel at the scene's middle, if the resolution allows"
+    return _passes(suffix, Option({"resolution": int(resolution)}, how, 0.0), reason, why, [])
+
+
+def _passes(
+    suffix: str, option: Option, reason: str, why: str, left_out: list[LeftOut]
+) -> tuple[list[Pass], list[LeftOut]]:
+    """The passes of an option."""
+    lookup = Pass(f"shadow{suffix}", reason, dict(option.how))
+    if option.chart is None:
+        return [lookup], [*left_out, LeftOut(f"shadow map{suffix}", "rays need none")]
+    return [Pass(f"shadow map{suffix}", f"what the light sees; {why}", dict(option.chart)), lookup], left_out

@@ -9,43 +9,19 @@ from typing import Any
 
 import numpy as np
 
-from .. import _arrays, light, shadow
+from .. import _arrays, light
 from .._arrays import Floats
 from ..accel import BVH
 from ._buffers import Seen, above_horizon, g_buffer
+from ._charts import chart_of, lit_by
 from ._facts import check_scene, checked_size, outline
 from ._frequency import Coarse
 from .frames import Frame
-from .passes import Pass, Plan, Shading
+from .passes import Plan, Shading
 from .plans import decided
 from .shading import shade
 
 __all__ = ["render"]
-
-
-def _lit(how: Pass, lamp: Any, seen: Seen, chart: Any, bvh: BVH | None) -> Floats:
-    """The lit fraction of every receiver by the technique of a pass."""
-    knobs = dict(how.settings)
-    technique = knobs.pop("technique")
-    if technique == "ray_traced":
-        assert bvh is not None
-        return shadow.ray_traced(bvh, seen.points, seen.geometric, lamp, **knobs)
-    chart, knobs = shadow._prepared(technique, chart, seen.points, knobs)
-    return np.asarray(getattr(shadow, technique)(chart, seen.points, seen.geometric, **knobs))
-
-
-def _chart(how: Pass, arrays: Any, lamp: Any, camera: Any, size: tuple[int, int], seen: Seen) -> Any:
-    """One map of a light, or cascades."""
-    settings = dict(how.settings)
-    count = settings.pop("cascades", None)
-    if count is None:
-        return shadow.shadow_map(arrays.positions, arrays.faces, lamp, **settings, receivers=seen.points)
-    forward = -np.asarray(camera.view(), np.float64)[2]
-    depths = seen.points @ forward[:3] + forward[3]
-    # A plan saw a coarser picture.
-    settings["far"] = max(settings["far"], float(depths.max(initial=0.0)) * 1.001)
-    knobs = {"count": count, "method": "logarithmic", "aspect": size[0] / size[1], **settings}
-    return shadow.cascades(arrays.positions, arrays.faces, lamp, camera, **knobs)
 
 
 class _Clock:
@@ -140,11 +116,11 @@ def render(
         if kind == "bvh":
             bvh = BVH(arrays.positions, arrays.faces)
         elif kind == "shadow map":
-            chart = _chart(p, arrays, lamps[index], scene.camera, chosen.size, seen)
+            chart = chart_of(p.settings, arrays, lamps[index], scene.camera, chosen.size, seen.points)
         elif kind == "shadow":
             seeded = p.settings.get("technique") in ("pcf", "pcss", "ray_traced") and "seed" not in p.settings
-            how = Pass(p.name, p.reason, {**p.settings, "seed": seed}) if seeded else p
-            fractions[index] = _lit(how, lamps[index], seen, chart, bvh)
+            how = {**p.settings, "seed": seed} if seeded else p.settings
+            fractions[index] = lit_by(how, lamps[index], seen.points, seen.geometric, chart, bvh)
         elif kind == "direct light":
             for i in p.settings["lights"]:
                 if outline(lamps[i]) is not None:
@@ -152,9 +128,9 @@ def render(
                     fraction *= above_horizon(lamps[i], seen)
             frequency = p.settings.get("frequency", "phong")
             if frequency == "phong":
-                lit_by = [fractions.get(i) for i in p.settings["lights"]]
+                fraction_of = [fractions.get(i) for i in p.settings["lights"]]
                 reaching = [lamps[i] for i in p.settings["lights"]]
-                radiance += _shaded(seen, arrays, eye, reaching, lit_by, p.settings, seed, chosen.shading)
+                radiance += _shaded(seen, arrays, eye, reaching, fraction_of, p.settings, seed, chosen.shading)
                 clock.done(p.name)
                 continue
             coarse = Coarse(seen, arrays, eye, frequency)

@@ -27,6 +27,7 @@ from . import (
     soft,
     virtual,
 )
+from ._sets import MapSet as MapSet
 from .bounds import *  # noqa: F403
 from .cascaded import *  # noqa: F403
 from .closed import *  # noqa: F403
