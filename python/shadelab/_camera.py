@@ -148,6 +148,7 @@ class Camera:
             If the size is not of two positive integers.
         """
         width, height = (_arrays.count("size", n, 1) for n in size)
+        dtype = _arrays.precision("dtype", dtype)
         right, up, back = self.view()[:3, :3]
         reach = math.tan(self.fov_y / 2)
         x = (2 * np.arange(width) + 1 - width) / height * reach

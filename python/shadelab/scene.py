@@ -298,7 +298,7 @@ class Scene:
         TypeError
             If the data type is neither.
         """
-        time = _arrays.number("time", time, 0, 1)
+        dtype, time = _arrays.precision("dtype", dtype), _arrays.number("time", time, 0, 1)
         worlds = [i.world(time).astype(dtype) for i in self.instances]
         starts = np.cumsum([0] + [len(w.positions) for w in worlds])
         table: dict[Material | brdf.Model, int] = {}

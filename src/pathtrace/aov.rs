@@ -8,9 +8,10 @@
 //!
 //! T. Saito, T. Takahashi, *Comprehensible rendering of 3-D shapes*, 1990.
 
+use super::Surfaces;
 use super::camera::{Camera, Pose};
 use super::filter::Filter;
-use crate::accel::{Bvh, Hit, Ray};
+use crate::accel::{Hit, Ray};
 use crate::dispatch;
 use crate::parallel::{self, Interrupted, Watch};
 use crate::real::Real;
@@ -20,15 +21,11 @@ use crate::vec::Vec3;
 
 /// What can be seen. Indices are in range.
 pub struct Things<'a, T> {
-    pub bvh: &'a Bvh<T>,
-    pub positions: &'a [[T; 3]],
-    /// Where vertices are at time 1, if any moves.
+    pub scene: &'a Surfaces<'a, T>,
+    /// Where vertices are at time 1, if any moves; copies of meshes do not.
     pub moved: Option<&'a [[T; 3]]>,
-    pub faces: &'a [[i32; 3]],
-    pub normals: &'a [[T; 3]],
-    pub colors: Option<&'a [[T; 3]]>,
-    pub material_ids: &'a [i32],
-    pub instance_ids: &'a [i32],
+    /// The instance of each face that is of no copy, and of each copy.
+    pub instances: [&'a [i32]; 2],
     /// Of each material.
     pub albedo: &'a [[T; 3]],
 }
@@ -70,25 +67,28 @@ struct Sums {
 
 impl<T: Real> Things<'_, T> {
     #[inline(always)]
-    fn interpolate(&self, of_vertices: &[[T; 3]], hit: &Hit<T>) -> Vec3<T> {
-        let [a, b, c] = self.faces[hit.face as usize].map(|v| Vec3::from(of_vertices[v as usize]));
+    fn interpolate(&self, corners: [[T; 3]; 3], hit: &Hit<T>) -> Vec3<T> {
+        let [a, b, c] = corners.map(Vec3::from);
         a * (T::one() - hit.u - hit.v) + b * hit.u + c * hit.v
     }
 
     #[inline(always)]
-    fn add(&self, pose: &Pose<T>, hit: &Hit<T>, sums: &mut Sums) {
+    fn add(&self, pose: &Pose<T>, hit: &Hit<T>, copy: i32, sums: &mut Sums) {
         if !hit.is_hit() {
             return;
         }
-        let point = self.interpolate(self.positions, hit);
-        let mut albedo = Vec3::from(self.albedo[self.material_ids[hit.face as usize] as usize]);
-        if let Some(colors) = self.colors {
-            albedo = albedo.times(self.interpolate(colors, hit));
+        let (scene, face) = (self.scene, hit.face as usize);
+        let corners = scene.corners_of(face, copy);
+        let point = self.interpolate(corners, hit);
+        let mut albedo = Vec3::from(self.albedo[scene.row_of(face, copy)]);
+        if let Some(colors) = scene.colors {
+            albedo = albedo.times(self.interpolate(scene.colors_of(face, copy, colors), hit));
         }
-        let mut normal = self.interpolate(self.normals, hit).normalize();
-        if normal.x.is_nan() {
-            let [a, b, c] = self.faces[hit.face as usize].map(|v| Vec3::from(self.positions[v as usize]));
-            normal = (b - a).cross(c - a).normalize();
+        let [a, b, c] = corners.map(Vec3::from);
+        let mut normal = (b - a).cross(c - a).normalize();
+        if let Some(normals) = scene.normals {
+            let shading = self.interpolate(scene.normals_of(face, copy, normals), hit).normalize();
+            normal = if shading.x.is_nan() { normal } else { shading };
         }
         sums.hits += 1.0;
         sums.depth += pose.depth(point).to_f64();
@@ -101,10 +101,16 @@ impl<T: Real> Things<'_, T> {
 
     /// How far what the centre's ray sees moves in the picture, from `start`'s to `end`'s.
     #[inline(always)]
-    fn motion(&self, start: &Pose<T>, end: &Pose<T>, ray: &Ray<T>, hit: &Hit<T>) -> [T; 2] {
+    fn motion(&self, start: &Pose<T>, end: &Pose<T>, ray: &Ray<T>, hit: &Hit<T>, copy: i32) -> [T; 2] {
         let (from, to) = if hit.is_hit() {
-            let point = self.interpolate(self.positions, hit);
-            let then = self.moved.map_or(point, |moved| self.interpolate(moved, hit));
+            let face = hit.face as usize;
+            let point = self.interpolate(self.scene.corners_of(face, copy), hit);
+            let then = match self.moved {
+                Some(moved) if copy < 0 => {
+                    self.interpolate(self.scene.faces[face].map(|v| moved[v as usize]), hit)
+                }
+                _ => point,
+            };
             (start.seen(point - start.pinhole.eye), end.seen(then - end.pinhole.eye))
         } else {
             let direction = ray.direction.into();
@@ -152,6 +158,7 @@ fn body<T: Real, S: Simd>(
     let mut rays = Vec::with_capacity(n);
     let mut poses = Vec::with_capacity(n);
     let mut hits = vec![Hit::miss(); n];
+    let mut copies = vec![-1; n];
     let mut sums = vec![Sums::default(); n];
     // The centres last: theirs are the ids.
     for k in 0..=samples.count {
@@ -172,10 +179,10 @@ fn body<T: Real, S: Simd>(
                 poses.push(pose);
             }
         }
-        things.bvh.closest_hits(s, &rays, &mut hits);
+        things.scene.closest_hits(s, &rays, &mut hits, &mut copies);
         if !centre || samples.count == 0 {
             for i in 0..n {
-                things.add(&poses[i], &hits[i], &mut sums[i]);
+                things.add(&poses[i], &hits[i], copies[i], &mut sums[i]);
             }
         }
     }
@@ -188,10 +195,14 @@ fn body<T: Real, S: Simd>(
         out.normal[i] = sum.normal.map(|x| T::of(x * share));
         out.depth[i] = if sum.hits > 0.0 { T::of(sum.depth * hit) } else { T::INFINITY };
         out.position[i] = sum.position.map(|x| T::of(x * hit));
-        let seen = &hits[i];
-        out.face[i] = seen.face;
-        let of = |ids: &[i32]| if seen.is_hit() { ids[seen.face as usize] } else { -1 };
-        (out.instance[i], out.material[i]) = (of(things.instance_ids), of(things.material_ids));
-        out.motion[i] = things.motion(&start, &end, &rays[i], seen);
+        let (seen, copy) = (&hits[i], copies[i]);
+        (out.face[i], out.instance[i], out.material[i]) = (seen.face, -1, -1);
+        if seen.is_hit() {
+            let face = seen.face as usize;
+            out.material[i] = things.scene.row_of(face, copy) as i32;
+            out.instance[i] =
+                if copy < 0 { things.instances[0][face] } else { things.instances[1][copy as usize] };
+        }
+        out.motion[i] = things.motion(&start, &end, &rays[i], seen, copy);
     }
 }

@@ -4,6 +4,7 @@
 //! mirrors whose lobe is bright beside it, as many directions of that, weighed by the balance heuristic. Both are Owen-scrambled Sobol' points
 //! with a scramble of its own for every receiver, so the error at an edge of shadow falls faster than 1/√samples. A
 //! run of samples that goes on where another ended (`start`) extends the same sequence; different seeds are independent.
+//! Lights of some size stop the light of others, as in [`super::path_trace`].
 //!
 //! Sums are in double. The variance is that of independent samples: of scrambled points an upper bound as a rule, so
 //! two seeds tell more.
@@ -11,6 +12,7 @@
 //! E. Veach, L. Guibas, *Optimally combining sampling techniques for Monte Carlo rendering*, 1995; A. B. Owen,
 //! *Scrambled net variance for integrals of smooth functions*, 1997.
 
+use super::lighting::{hidden, hide};
 use super::{Tally, leave};
 use crate::accel::{Bvh, Ray};
 use crate::brdf::ggx;
@@ -40,6 +42,27 @@ struct Bench<T> {
     /// What each ray carries if nothing is in its way, and which sample of the batch it belongs to.
     carried: Vec<(Vec3<T>, usize)>,
     blocked: Vec<bool>,
+}
+
+/// A light among all, which may stand in its way.
+#[derive(Clone, Copy)]
+struct Asked<'a, T> {
+    lights: &'a [Light<T>],
+    number: usize,
+    /// Whether any stands.
+    hide: bool,
+}
+
+impl<T: Real> Asked<'_, T> {
+    #[inline(always)]
+    fn light(&self) -> &Light<T> {
+        &self.lights[self.number]
+    }
+    /// Whether another light stops the ray.
+    #[inline(always)]
+    fn hidden(&self, ray: &Ray<T>) -> bool {
+        self.hide && hidden(self.lights, ray, self.number)
+    }
 }
 
 /// A receiver, its geometric normal, and how far above it rays start.
@@ -78,12 +101,12 @@ impl<T: Real> Site<T> {
         &self,
         s: S,
         bvh: &Bvh<T>,
-        light: &Light<T>,
+        asked: Asked<'_, T>,
         scramble: &[Scramble; 4],
         digits: &[[u32; 3]],
         bench: &mut Bench<T>,
     ) -> Tally {
-        let (r, mut tally) = (&self.receiver, Tally::default());
+        let (r, light, mut tally) = (&self.receiver, asked.light(), Tally::default());
         let both = r.lobe_matters(light);
         for batch in digits.chunks(BATCH) {
             bench.rays.clear();
@@ -105,9 +128,9 @@ impl<T: Real> Site<T> {
             if !bench.rays.is_empty() {
                 bench.blocked.resize(bench.rays.len(), false);
                 bvh.any_hits(s, &bench.rays, &mut bench.blocked);
-                for ((value, sample), blocked) in bench.carried.iter().zip(&bench.blocked) {
-                    if !blocked {
-                        values[*sample] = values[*sample] + *value;
+                for (i, &(value, sample)) in bench.carried.iter().enumerate() {
+                    if !bench.blocked[i] && !asked.hidden(&bench.rays[i]) {
+                        values[sample] = values[sample] + value;
                     }
                 }
             }
@@ -118,14 +141,14 @@ impl<T: Real> Site<T> {
 
     /// Light from a punctual light.
     #[inline(always)]
-    fn beam<S: Simd>(&self, s: S, bvh: &Bvh<T>, light: &Light<T>) -> Vec3<T> {
+    fn beam<S: Simd>(&self, s: S, bvh: &Bvh<T>, asked: Asked<'_, T>) -> Vec3<T> {
         let none = Vec3::splat(T::zero());
-        let Some((radiance, wi, distance)) = self.receiver.beam(light) else { return none };
+        let Some((radiance, wi, distance)) = self.receiver.beam(asked.light()) else { return none };
         if wi.dot(self.normal) <= T::zero() {
             return none;
         }
         let ray = leave(self.receiver.point, self.normal, wi, self.offset, distance);
-        if bvh.any_hit(s, &ray) { none } else { radiance }
+        if asked.hidden(&ray) || bvh.any_hit(s, &ray) { none } else { radiance }
     }
 }
 
@@ -171,6 +194,7 @@ fn body<T: Real, S: Simd>(
     mean: &mut [[T; 3]],
     variance: &mut [[T; 3]],
 ) {
+    let hide = hide(lights, lights.len());
     let mut bench = Bench { rays: Vec::new(), carried: Vec::new(), blocked: Vec::new() };
     for k in 0..mean.len() {
         let i = first + k;
@@ -179,15 +203,16 @@ fn body<T: Real, S: Simd>(
             let normal = footing.normals.map_or(receiver.frame.z, |n| n[i].into());
             let site = Site { receiver, normal, offset: footing.offset };
             for (l, light) in lights.iter().enumerate() {
+                let asked = Asked { lights, number: l, hide };
                 if light.has_area() {
                     let stream = (l as u64) << 40 | i as u64;
                     let scramble = std::array::from_fn(|d| Scramble::new(seed, stream, d as u32));
-                    let tally = site.area(s, bvh, light, &scramble, digits, &mut bench);
+                    let tally = site.area(s, bvh, asked, &scramble, digits, &mut bench);
                     let of_mean = tally.variance();
                     (0..3)
                         .for_each(|c| (sum[c], spread[c]) = (sum[c] + tally.mean[c], spread[c] + of_mean[c]));
                 } else {
-                    let radiance = site.beam(s, bvh, light).to_array();
+                    let radiance = site.beam(s, bvh, asked).to_array();
                     (0..3).for_each(|c| sum[c] += radiance[c].to_f64());
                 }
             }

@@ -95,19 +95,22 @@ impl<T: Real> Tracer<T> for Distribution<'_, T> {
         let (mut sum, mut carried) = (Vec3::splat(T::zero()), Vec3::splat(T::one()));
         let mut pdf = T::INFINITY;
         for depth in 0..=self.options.max_depth {
-            let hit = stage.bvh().closest_hit(s, &ray);
+            let (hit, copy) = stage.closest_hit(s, &ray);
             if let Some(radiance) = stage.beyond(&ray, &hit, pdf) {
                 return sum + carried.times(radiance);
             }
-            let Some(site) = stage.scene.at(&hit, ray.direction.into()) else { return sum };
-            if let Some((emission, other)) = stage.scene.glow(
-                stage.lighting,
-                hit.face as usize,
-                &ray,
-                Vec3::splat(T::zero()),
-                hit.t,
-                depth,
-            ) {
+            let Some(site) = stage.scene.at(&hit, copy, ray.direction.into()) else { return sum };
+            // Copies emit nothing.
+            if copy < 0
+                && let Some((emission, other)) = stage.scene.glow(
+                    stage.lighting,
+                    hit.face as usize,
+                    &ray,
+                    Vec3::splat(T::zero()),
+                    hit.t,
+                    depth,
+                )
+            {
                 sum = sum + carried.times(emission) * weight(pdf, other);
             }
             let (base, last) =

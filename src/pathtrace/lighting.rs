@@ -83,25 +83,14 @@ impl<T: Real> Lighting<T> {
             faces,
             count: sources.len(),
             sky: scene.environment.is_some(),
-            hide: sources.len() > 1 && scene.lights.iter().any(Light::stands),
+            hide: hide(scene.lights, sources.len()),
         }
     }
 
     /// Whether a light stands in the way of a shadow ray to another source: as those stop paths that meet them.
     #[inline(always)]
     pub fn hides(&self, lights: &[Light<T>], ray: &Ray<T>, source: usize) -> bool {
-        if !self.hide {
-            return false;
-        }
-        for (k, light) in lights.iter().enumerate() {
-            if k != source
-                && let Some(sighting) = light.meet(ray.origin.into(), ray.direction.into())
-                && sighting.distance < ray.t_max
-            {
-                return true;
-            }
-        }
-        false
+        self.hide && hidden(lights, ray, source)
     }
 
     #[inline(always)]
@@ -268,6 +257,25 @@ impl<T: Real> Surfaces<'_, T> {
         }
         nearest.1
     }
+}
+
+/// Whether lights may stand before others of `sources`.
+pub fn hide<T: Real>(lights: &[Light<T>], sources: usize) -> bool {
+    sources > 1 && lights.iter().any(Light::stands)
+}
+
+/// Whether a light stands in the way of a shadow ray to the source.
+#[inline(always)]
+pub fn hidden<T: Real>(lights: &[Light<T>], ray: &Ray<T>, source: usize) -> bool {
+    for (k, light) in lights.iter().enumerate() {
+        if k != source
+            && let Some(sighting) = light.meet(ray.origin.into(), ray.direction.into())
+            && sighting.distance < ray.t_max
+        {
+            return true;
+        }
+    }
+    false
 }
 
 /// The side from which light comes, if it comes from one.

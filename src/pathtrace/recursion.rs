@@ -8,7 +8,7 @@ use super::filter::Filter;
 use super::lighting::{Lighting, weight};
 use super::surface::Spot;
 use super::{Surfaces, leave};
-use crate::accel::{Bvh, Hit, Ray};
+use crate::accel::{Hit, Ray};
 use crate::brdf::metallic_roughness::{Lobes, MIN_ALPHA};
 use crate::dispatch;
 use crate::parallel::{self, Interrupted, Watch};
@@ -70,9 +70,23 @@ pub fn polished<T: Real>(lobes: &Lobes<T>) -> bool {
 }
 
 impl<T: Real> Stage<'_, T> {
+    /// The nearest hit, and the copy of a mesh that it is of, -1 for none.
     #[inline(always)]
-    pub fn bvh(&self) -> &Bvh<T> {
-        self.scene.bvh
+    pub fn closest_hit<S: Simd>(&self, s: S, ray: &Ray<T>) -> (Hit<T>, i32) {
+        let (mut hit, mut copy) = ([self.scene.bvh.closest_hit(s, ray)], [-1]);
+        if let Some(copies) = self.scene.copies {
+            copies.closest_hits(s, &[*ray], &mut hit, &mut copy);
+        }
+        (hit[0], copy[0])
+    }
+
+    #[inline(always)]
+    fn any_hit<S: Simd>(&self, s: S, ray: &Ray<T>) -> bool {
+        let mut blocked = [self.scene.bvh.any_hit(s, ray)];
+        if let Some(copies) = self.scene.copies {
+            copies.any_hits(s, &[*ray], &mut blocked);
+        }
+        blocked[0]
     }
 
     /// The ray that leaves a surface along a local direction; None where the face is in the way.
@@ -141,7 +155,7 @@ impl<T: Real> Stage<'_, T> {
         }
         let ray = leave(site.point, site.normal, light.wi, self.scene.offset, light.distance);
         let hidden = self.lighting.hides(self.scene.lights, &ray, source);
-        if hidden || self.bvh().any_hit(s, &ray) { none } else { value }
+        if hidden || self.any_hit(s, &ray) { none } else { value }
     }
 }
 

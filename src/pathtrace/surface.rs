@@ -2,12 +2,13 @@
 
 use super::Emitters;
 use super::copies::Copies;
-use crate::accel::{Bvh, Hit};
+use crate::accel::{Bvh, Hit, Ray};
 use crate::brdf::Bsdf;
 use crate::brdf::Row;
 use crate::environment::panorama::Panorama;
 use crate::light::Light;
 use crate::real::{Lanes, Real};
+use crate::simd::Simd;
 use crate::transform::orthonormal_basis::Frame;
 use crate::vec::Vec3;
 
@@ -115,6 +116,15 @@ impl<V: Lanes> Facing<V> {
 }
 
 impl<T: Real> Surfaces<'_, T> {
+    /// The nearest hits, and the copies of meshes that they are of, -1 for none; without copies those stay as they are.
+    #[inline(always)]
+    pub fn closest_hits<S: Simd>(&self, s: S, rays: &[Ray<T>], hits: &mut [Hit<T>], copies: &mut [i32]) {
+        self.bvh.closest_hits(s, rays, hits);
+        if let Some(placed) = self.copies {
+            placed.closest_hits(s, rays, hits, copies);
+        }
+    }
+
     #[inline(always)]
     pub fn corners(&self, face: usize) -> [Vec3<T>; 3] {
         self.faces[face].map(|v| self.positions[v as usize].into())
@@ -127,15 +137,10 @@ impl<T: Real> Surfaces<'_, T> {
         (b - a).cross(c - a).normalize()
     }
 
-    /// The surface at a hit, met along the unit `direction`; None on a face without area.
+    /// The surface at a hit with a copy of a mesh (-1: with the rest), met along the unit `direction`; None on a face
+    /// without area.
     #[inline(always)]
-    pub fn at(&self, hit: &Hit<T>, direction: Vec3<T>) -> Option<Spot<T>> {
-        self.at_copy(hit, -1, direction)
-    }
-
-    /// The surface at a hit with a copy of a mesh; -1 for the rest.
-    #[inline(always)]
-    pub fn at_copy(&self, hit: &Hit<T>, copy: i32, direction: Vec3<T>) -> Option<Spot<T>> {
+    pub fn at(&self, hit: &Hit<T>, copy: i32, direction: Vec3<T>) -> Option<Spot<T>> {
         let face = hit.face as usize;
         let normals = match self.normals {
             Some(normals) => Some(vectors(self.normals_of(face, copy, normals))),

@@ -145,11 +145,10 @@ impl<T: Real> Tracer<'_, T> {
                 return;
             }
             wave.hits.resize(wave.rays.len(), Hit::miss());
-            self.scene.bvh.closest_hits(s, &wave.rays, &mut wave.hits);
-            if let Some(copies) = self.scene.copies {
+            if self.scene.copies.is_some() {
                 wave.copies.resize(wave.rays.len(), -1);
-                copies.closest_hits(s, &wave.rays, &mut wave.hits, &mut wave.copies);
             }
+            self.scene.closest_hits(s, &wave.rays, &mut wave.hits, &mut wave.copies);
             self.collect(s, wave, depth);
             if depth == self.options.max_depth {
                 return;
@@ -235,7 +234,7 @@ impl<T: Real> Tracer<'_, T> {
         for q in 0..wave.other.len() {
             let i = wave.other[q] as usize;
             let (direction, path) = (Vec3::from(wave.rays[i].direction), wave.paths[i]);
-            let Some(spot) = self.scene.at_copy(&wave.hits[i], wave.copy(i), direction) else { continue };
+            let Some(spot) = self.scene.at(&wave.hits[i], wave.copy(i), direction) else { continue };
             self.ask_lights(wave, &spot, path, depth);
             self.go_on(wave, &spot, path, depth);
         }

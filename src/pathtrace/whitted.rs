@@ -83,13 +83,13 @@ impl<T: Real> Tracer<T> for Whitted<'_, T> {
         let mut sum = Vec3::splat(T::zero());
         let mut stack = vec![Branch { ray, carried: Vec3::splat(T::one()), depth: 0 }];
         while let Some(Branch { ray, carried, depth }) = stack.pop() {
-            let hit = stage.bvh().closest_hit(s, &ray);
+            let (hit, copy) = stage.closest_hit(s, &ray);
             if let Some(radiance) = stage.beyond(&ray, &hit, T::INFINITY) {
                 sum = sum + carried.times(radiance);
                 continue;
             }
-            let Some(site) = stage.scene.at(&hit, ray.direction.into()) else { continue };
-            let emission = stage.scene.emission[stage.scene.material_ids[hit.face as usize] as usize];
+            let Some(site) = stage.scene.at(&hit, copy, ray.direction.into()) else { continue };
+            let emission = stage.scene.emission[stage.scene.row_of(hit.face as usize, copy)];
             sum = sum + carried.times(emission.into());
             for source in 0..stage.scene.lights.len() {
                 let light = stage.lit(

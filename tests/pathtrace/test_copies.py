@@ -92,7 +92,7 @@ def test_what_emits_or_moves_or_would_lose_its_normals_is_flattened():
     ]
     world = scene.Scene(things, (), scene.Camera((0, 1, 5), (0, 0, 0), shutter=(0, 1)))
     assert shareable(world, "shared", 1) == [3, 4, 5]
-    held = World(world, None, np.dtype(np.float64), shared=[3, 4, 5])
+    held = World(world, None, np.dtype(np.float64), "shared", 1)
     assert len(held.copies.rest.instances) == len(things) - 3
     assert_alike(*both(world, samples=16))
 
@@ -171,3 +171,51 @@ print(peak() - before)
 def test_an_unknown_way_is_named(bad):
     with pytest.raises((TypeError, ValueError), match="instances"):
         sl.pathtrace.path_trace(scene.Scene(mesh.box(), (LAMP,), CAMERA), (4, 4), 1, instances=bad)
+
+
+@pytest.mark.parametrize("tracer", [sl.pathtrace.whitted, sl.pathtrace.distribution])
+@pytest.mark.parametrize("colored", [False, True])
+def test_recursion_sees_copies(tracer, colored):
+    colors = np.random.default_rng(1).uniform(0.2, 1, (162, 3)) if colored else None
+    thing = ball(colors=colors)
+    polished = brdf.Conductor((0.9, 0.8, 0.7))
+    things = [scene.Instance(thing, m, ((CLAY, GLASS), (GREEN, polished))[k % 2]) for k, m in enumerate(placed(3))]
+    glow = scene.Instance(
+        mesh.icosphere(1, 0.2), sl.transform.translate((0, 1.5, 0)), (scene.Material(emission=(2.0,) * 3),)
+    )
+    world = scene.Scene([FLOOR, *things, glow], (LAMP,), CAMERA, background=(0.1, 0.1, 0.2))
+    flat, shared = (
+        tracer(world, (24, 20), 4, 5, instances=how, dtype=np.float64).radiance for how in ("flat", "shared")
+    )
+    assert_alike(flat, shared, share=0.9)
+    np.testing.assert_allclose(shared.mean(), flat.mean(), rtol=0.01)
+
+
+@pytest.mark.parametrize("samples", [0, 8])
+@pytest.mark.parametrize("moves", [False, True])
+def test_aovs_call_copies_what_the_flattened_scene_does(samples, moves):
+    colors = np.random.default_rng(2).uniform(0.2, 1, (162, 3))
+    clear = scene.Instance(ball(colors=colors), placed(4)[0], (GLASS, GREEN))
+    things = [scene.Instance(clear.mesh, m, ((CLAY, GREEN), (GREEN, CLAY))[k % 2]) for k, m in enumerate(placed(5))]
+    end = sl.transform.translate((0.4, 1.0, 1)) if moves else None
+    lone = scene.Instance(mesh.box((0.4, 0.4, 0.4)), sl.transform.translate((0, 1, 1)), (GREEN,), end)
+    camera = scene.Camera((0.5, 1.2, 5), (0, 0, 0), fov_y=0.8, end=scene.Camera((0.6, 1.2, 5), (0, 0, 0), fov_y=0.8))
+    # What is flattened stands before, between and after the copies.
+    world = scene.Scene([*things[:3], FLOOR, lone, *things[3:], clear], (), camera)
+    flat, shared = (
+        sl.pathtrace.aovs(world, (40, 30), samples, instances=how, dtype=np.float64) for how in ("flat", "shared")
+    )
+    for name in ("face", "instance", "material"):
+        same = getattr(flat, name) == getattr(shared, name)
+        assert same.mean() > 0.99, name
+    assert len(np.unique(shared.instance)) > 6
+    for name in ("albedo", "normal", "depth", "position", "coverage", "motion"):
+        close = np.isclose(getattr(flat, name), getattr(shared, name), rtol=1e-9, atol=1e-9)
+        assert close.mean() > 0.98, name
+
+
+def test_everything_seen_may_be_a_copy():
+    alone = scene.Scene([scene.Instance(ball(), m, (CLAY, GREEN)) for m in placed(3)], (LAMP,), CAMERA)
+    flat, shared = (sl.pathtrace.aovs(alone, (32, 24), instances=how) for how in ("flat", "shared"))
+    for name in ("face", "instance", "material"):
+        assert (getattr(flat, name) == getattr(shared, name)).mean() > 0.99

@@ -55,7 +55,8 @@ def test_without_obstacles_it_is_unshadowed(roughness):
     points = rng.uniform(-1, 1, (60, 3)) * [1, 0.2, 1]
     normals = rng.normal(size=(60, 3)) * 0.3 + UP
     normals /= np.linalg.norm(normals, axis=-1, keepdims=True)
-    lights = [LAMP, PointLight((1, 2, 1), (2, 2, 2)), DirectionalLight((0, -1, 0.3))]
+    # None before another, which would shade it.
+    lights = [LAMP, PointLight((1, 2, 1), (2, 2, 2)), DirectionalLight((1, -0.4, 0.3))]
     material = ([0.8, 0.5, 0.2], 0.5, roughness)
     eye = (0.5, 1.0, 3.0)
     got = sl.pathtrace.direct_light(NOWHERE, lights, points, normals, *material, eye=eye, samples=2048)
@@ -169,3 +170,28 @@ def test_rows_without_surface_are_black_and_nan_stays_in_its_row():
     assert np.array_equal(got.radiance[1], [0, 0, 0]) and np.isnan(got.radiance[2]).all()
     with pytest.raises(ValueError, match="samples: expected an integer from 1"):
         sl.pathtrace.direct_light(NOWHERE, LAMP, points, UP, [0.5] * 3, wo=UP, samples=0)
+
+
+@pytest.mark.parametrize("roughness", [0.2, 1.0])
+def test_a_light_stops_the_light_of_others_as_its_own_shape_would(roughness):
+    """As in `path_trace`; from behind, lights are not there."""
+    near = RectLight((0, 1, 0), (1, 0, 0), (0, 0, 1), (1, 1, 1))
+    back = RectLight((0, 1, 0), (0, 0, 1), (1, 0, 0), (1, 1, 1))
+    corners = np.array([[-0.5, 1, -0.5], [0.5, 1, -0.5], [0.5, 1, 0.5], [-0.5, 1, 0.5]])
+    shape = sl.accel.BVH(corners, [[0, 1, 2], [0, 2, 3]])
+    x = np.linspace(-1, 1, 21)
+    points = np.stack([x, 0 * x, 0.3 * x], -1)
+    material = ([0.6] * 3, 0.3, roughness)
+
+    def lit(lights, bvh=NOWHERE, seed=0):
+        return sl.pathtrace.direct_light(bvh, lights, points, UP, *material, eye=(0, 1, 2), samples=1024, seed=seed)
+
+    for far in (RectLight((0, 2, 0), (2, 0, 0), (0, 0, 2), (5, 4, 3)), PointLight((0, 2, 0), (9, 9, 9))):
+        alone, past, free = lit([near]), lit([far], shape, 1), lit([far], seed=2)
+        together, behind = lit([near, far], seed=3), lit([back, far], seed=4)
+        assert (past.radiance < 0.9 * free.radiance).any()
+        wanted = alone.radiance + past.radiance
+        spread = np.sqrt(together.variance + alone.variance + past.variance)
+        assert (np.abs(together.radiance - wanted) < 5 * spread + 1e-9).all()
+        spread = np.sqrt(behind.variance + free.variance)
+        assert (np.abs(behind.radiance - free.radiance) < 5 * spread + 1e-9).all()

@@ -79,8 +79,17 @@ def lens_camera(
     camera: Camera, size: Size, shutter: tuple[float, float] | None = None
 ) -> tuple[Pose, Pose | None, tuple[float, float]]:
     """The camera as kernels take it: how it stands at time 0 and, if it moves, at time 1; its shutter's times."""
+    check_camera(camera)
     end = None if camera.end is None else _pose(camera.end, size)
     return _pose(camera, size), end, camera.shutter if shutter is None else shutter
+
+
+def check_camera(camera: Any) -> Camera:
+    from ..scene import Camera
+
+    if not isinstance(camera, Camera):
+        raise TypeError(f"camera: expected a Camera, got {type(camera).__name__}")
+    return camera
 
 
 def check_bvh(bvh: Any) -> None:

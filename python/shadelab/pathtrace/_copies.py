@@ -67,6 +67,7 @@ class Copies:
         chosen = set(numbers)
         self.rest = replace(scene, instances=tuple(i for k, i in enumerate(scene.instances) if k not in chosen))
         self.dtype = dtype
+        self.numbers = np.array(numbers, np.int32)
         self._instances = [scene.instances[k] for k in numbers]
         distinct = {id(i.mesh): i.mesh for i in self._instances}
         self._order = {key: k for k, key in enumerate(distinct)}

@@ -1,17 +1,23 @@
-"""A scene as kernels take it: at one time, or at the times at which samples see it while the shutter is open."""
+"""A scene as kernels take it: at one time, or at the times at which samples see it while the shutter is open.
+
+What is made of a scene (arrays in the world, hierarchies) is kept until another scene is traced, or that one is gone,
+or anything of it has changed: small pictures would take longer to prepare than to trace.
+"""
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+import weakref
+from collections.abc import Hashable, Iterator
 from functools import cached_property
-from typing import TYPE_CHECKING, Any, NamedTuple
+from typing import TYPE_CHECKING, Any, NamedTuple, cast, get_args
 
 import numpy as np
+from numpy.typing import NDArray
 
 from .. import _arrays, light
 from ..accel import BVH
 from ._common import check_bvh, surface_offset
-from ._copies import Copies
+from ._copies import Copies, Sharing, shareable
 
 if TYPE_CHECKING:
     from ..scene import Scene, SceneArrays
@@ -31,6 +37,55 @@ class Moment(NamedTuple):
     """What the camera's own shutter becomes; None leaves it."""
 
 
+class _Made:
+    """A scene at time 0: copies, what is flattened (all but these) and its hierarchy."""
+
+    def __init__(self, scene: Scene, shared: list[int], dtype: np.dtype[Any]) -> None:
+        # No reference to the scene itself, which may go.
+        self.copies = Copies(scene, shared, dtype) if shared else None
+        self.arrays = (self.copies.rest if self.copies else scene).flatten(dtype)
+
+    @cached_property
+    def bvh(self) -> BVH:
+        return BVH(self.arrays.positions, self.arrays.faces)
+
+
+def _contents(scene: Scene, shared: list[int], dtype: np.dtype[Any]) -> Hashable:
+    """All that a flattened scene depends on: arrays may have been written to since."""
+    meshes: dict[int, Hashable] = {}
+    for mesh in {id(i.mesh): i.mesh for i in scene.instances}.values():
+        arrays = (mesh.positions, mesh.faces, mesh.normals, mesh.colors, mesh.uvs, mesh.material_ids)
+        meshes[id(mesh)] = tuple(None if a is None else (a.shape, a.dtype, hash(a.tobytes())) for a in arrays)
+    things = [(meshes[id(i.mesh)], i.transform.tobytes(), i.materials) for i in scene.instances]
+    return dtype, tuple(shared), tuple(things)
+
+
+_kept: tuple[weakref.ref[Any], Hashable, _Made] | None = None
+
+
+def _forget(gone: weakref.ref[Any]) -> None:
+    global _kept
+    if _kept is not None and _kept[0] is gone:
+        _kept = None
+
+
+def _made(scene: Scene, shared: list[int], dtype: np.dtype[Any]) -> _Made:
+    """The scene flattened, as it was kept if nothing has changed."""
+    global _kept
+    from ..scene import Scene
+
+    if type(scene) is not Scene:
+        return _Made(scene, shared, dtype)
+    contents, kept = _contents(scene, shared, dtype), _kept
+    if kept is not None and kept[0]() is scene and kept[1] == contents:
+        return kept[2]
+    # Before the next is made, that both are not in memory.
+    _kept = kept = None
+    made = _Made(scene, shared, dtype)
+    _kept = weakref.ref(scene, _forget), contents, made
+    return made
+
+
 class World:
     """The scene and its hierarchy at time 0, refitted at others."""
 
@@ -39,22 +94,24 @@ class World:
         scene: Scene,
         bvh: BVH | None,
         dtype: np.dtype[Any],
+        instances: Sharing,
+        rays: int,
         all_directions: bool = False,
-        shared: Sequence[int] = (),
     ) -> None:
         """With `all_directions`, light that comes evenly from everywhere is background, not a source to be asked.
 
-        The instances in `shared` are traced as copies.
+        `rays` are those from the camera in all the pictures, by which "auto" chooses what is traced as copies.
         """
         if not callable(getattr(scene, "flatten", None)) or isinstance(scene, np.ndarray):
             raise TypeError(f"scene: expected a Scene, got {type(scene).__name__}")
         self.scene, self.dtype = scene, dtype
-        self.copies = Copies(scene, shared, dtype) if shared else None
-        # What is flattened: all but the copies.
+        sharing = cast("Sharing", _arrays.choice("instances", instances, get_args(Sharing)))
+        self.shared = shareable(scene, sharing, rays) if bvh is None else []
+        made = _made(scene, self.shared, dtype)
+        self.copies, self.arrays = made.copies, made.arrays
         self._rest = self.copies.rest if self.copies else scene
-        self.arrays = self._rest.flatten(dtype)
         if bvh is None:
-            bvh = BVH(self.arrays.positions, self.arrays.faces)
+            bvh = made.bvh
         else:
             check_bvh(bvh)
             own, mine = (bvh._positions, bvh._faces), (self.arrays.positions, self.arrays.faces)
@@ -78,10 +135,18 @@ class World:
             lights = [lamp for lamp in lights if not isinstance(lamp, light.AmbientLight)]
             for lamp in ambient:
                 background += lamp.radiance
-            if sky is not None and not np.ptp(sky.radiance, axis=(0, 1)).any():
+            if sky is not None and all((row == sky.radiance[0, 0]).all() for row in sky.radiance):
                 background, sky = background + sky.radiance[0, 0], None
         panorama = None if sky is None else sky._panorama(self.dtype)
         return light._table("lights", lights), tuple(float(c) for c in background), panorama
+
+    def all_arrays(self, arrays: SceneArrays) -> SceneArrays:
+        """What is flattened, and the meshes of copies behind it in their own space."""
+        return arrays if self.copies is None else self.copies.join(arrays)[0]
+
+    def numbers(self) -> Numbers:
+        """What faces, instances and materials are called."""
+        return Numbers(self)
 
     def given(self, moment: Moment) -> tuple[Any, ...]:
         """The scene at a moment, as kernels take it."""
@@ -120,6 +185,42 @@ class World:
             time = opened + (closed - opened) * ((_reversed_digits(first // each) + shift) % 1.0)
             arrays, bvh = self.at(time)
             yield Moment(first, min(each, start + samples - first), arrays, bvh, (time, time))
+
+
+class Numbers:
+    """What faces, instances and materials of a world are called in the flattened scene."""
+
+    def __init__(self, world: World) -> None:
+        copies, ids = world.copies, world.arrays.instance_ids
+        self.instances = [ids, np.empty(0, np.int32)]
+        self._tables: tuple[Any, Any] | None = None
+        if copies is None:
+            return
+        whole = world.scene.instances
+        others = np.setdiff1d(np.arange(len(whole), dtype=np.int32), copies.numbers)
+        self.instances = [others[ids], copies.numbers]
+        # Where the faces of each instance begin, here less there.
+        counts = np.array([len(i.mesh.faces) for i in whole])
+        begin = np.zeros(len(whole), np.int64)
+        begin[others] = np.cumsum(counts[others]) - counts[others]
+        joined, (_, (first_face, *_)) = copies.join(world.arrays)
+        begin[copies.numbers] = first_face
+        rows: dict[Any, int] = {}
+        for instance in whole:
+            for material in instance.materials:
+                rows.setdefault(material, len(rows))
+        self._tables = (
+            begin - (np.cumsum(counts) - counts),
+            np.array([rows.get(m, -1) for m in joined.materials], np.int32),
+        )
+
+    def flattened(self, face: NDArray[np.int32], instance: NDArray[np.int32], material: NDArray[np.int32]) -> None:
+        """Renames in place what is not −1."""
+        if self._tables is not None:
+            shift, rows = self._tables
+            hit = instance >= 0
+            face[hit] -= shift[instance[hit]].astype(np.int32)
+            material[hit] = rows[material[hit]]
 
 
 def _reversed_digits(i: int) -> float:

@@ -13,6 +13,7 @@ from .._arrays import Floats
 from .._kernels import pathtrace as _kernels
 from ..accel import BVH
 from ._common import Size, lens_camera, picture_size
+from ._copies import Sharing
 from ._world import Moment, World
 from .filters import FilterName, PixelFilter, pixel_filter
 
@@ -53,6 +54,7 @@ def aovs(
     filter: FilterName | PixelFilter = "box",
     seed: int = 0,
     start: int = 0,
+    instances: Sharing = "auto",
     bvh: BVH | None = None,
     dtype: DTypeLike = np.float32,
     progress: bool | Callable[[int, int], object] | None = None,
@@ -69,7 +71,7 @@ def aovs(
         centres from the middle of the lens, at time 0.
     filter : str or PixelFilter
         See `PixelFilter`.
-    seed, start, bvh, dtype, progress
+    seed, start, instances, bvh, dtype, progress
         As in `path_trace`.
 
     Returns
@@ -105,29 +107,29 @@ def aovs(
     seed = _arrays.count("seed", seed, 0, 2**64 - 1)
     start = _arrays.count("start", start, 0, 2**32 - 1 - samples)
     kernel_filter = pixel_filter(filter)._kernel()
-    world = World(scene, bvh, _arrays.precision("dtype", dtype))
+    world = World(scene, bvh, _arrays.precision("dtype", dtype), instances, size[0] * size[1] * (samples + 1))
     call = _arrays.progress_callback(progress, "aovs")
     moved = world.at(1.0)[0].positions if scene.moves else None
     # What passes through glass keeps its colour.
-    clear = [isinstance(m, brdf.Dielectric | brdf.RoughDielectric) for m in world.arrays.materials]
-    albedo = np.where(np.array(clear)[:, None], world.dtype.type(1), world.arrays.base_color)
+    arrays = world.all_arrays(world.arrays)
+    clear = [isinstance(m, brdf.Dielectric | brdf.RoughDielectric) for m in arrays.materials]
+    albedo = np.where(np.array(clear)[:, None], world.dtype.type(1), arrays.base_color)
+    numbers = world.numbers()
 
     def look(moment: Moment) -> AOVs:
-        a = moment.arrays
         out = _empty(size, world.dtype)
         order: list[NDArray[Any]] = [out.coverage, out.albedo, out.normal, out.depth, out.position]
         order += [out.face, out.instance, out.material, out.motion]
-        mesh = [np.require(x, requirements=["C", "A"]) for x in (a.positions, a.faces, a.normals)]
         _kernels.aovs(
-            moment.bvh._tree,
-            [*mesh, a.material_ids, a.instance_ids, albedo],
-            [a.colors, moved],
-            lens_camera(scene.camera, size, moment.shutter),
-            kernel_filter,
+            world.given(moment),
+            [*numbers.instances, albedo],
+            moved,
+            (lens_camera(scene.camera, size, moment.shutter), kernel_filter),
             (size[0], moment.samples, moment.start, seed),
             [x.reshape(-1, x.shape[2]) if x.ndim == 3 else x.reshape(-1) for x in order],
             call,
         )
+        numbers.flattened(out.face, out.instance, out.material)
         return out
 
     if not scene.moves or samples == 0:

@@ -98,6 +98,8 @@ def direct_light(
 
     Notes
     -----
+    Lights of some size stop, from the side that shines, the light of others, as in `path_trace`.
+
     Unbiased, but for light that passes between a surface and what touches it within `offset`. Samples are
     Owen-scrambled Sobol' points: behind an edge of shadow the error falls about as samples^(-3/4), so that `variance`
     overstates it; half the squared difference of two seeds is an unbiased measure. Sums are in double. The same bits

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable, Iterator
-from typing import TYPE_CHECKING, Any, Literal, TypeAlias, cast, get_args
+from typing import TYPE_CHECKING, Any, Literal, TypeAlias, get_args
 
 import numpy as np
 from numpy.typing import DTypeLike, NDArray
@@ -13,7 +13,7 @@ from .. import _arrays
 from .._kernels import pathtrace as _kernels
 from ..accel import BVH
 from ._common import Size, lens_camera, picture_size
-from ._copies import Sharing, shareable
+from ._copies import Sharing
 from ._world import World
 from .estimate import PILOT, Film, Traced, rounds
 from .filters import PixelFilter, pixel_filter
@@ -109,18 +109,20 @@ def path_trace(
     TypeError, ValueError
         If an argument is out of its domain.
 
-    Notes
-    -----
-    Unbiased up to `max_depth`, without `clamp` and `target_error`. Time is the same for every sample, whatever their
-    number, and memory does not grow with it. `variance` is that of independent samples: of scrambled points an upper
-    bound as a rule, so two seeds tell more. Lights of some size are seen from the side that shines, stop there what
-    meets them, other lights' and the sky's light too, and are not there from behind; surfaces have two sides.
-    (`shadelab.render` draws no lights.) The camera's `near` and `far` cut nothing off: paths start at the eye. Light
-    that comes evenly from everywhere (background, `AmbientLight`, an environment of one colour) is left to directions
-    whatever the strategy: asking for it too took a bunny 1.6 to 2.6 times as long to the same error. Of a panorama each
-    surface draws two directions, and looks along the one kept by what it would bring. No firefly is clamped: caustics
-    from narrow mirrors converge slowly, and `variance` shows where, and `outliers` how often one sample outweighed all
-    before it.
+    Notes ----- Unbiased up to `max_depth`, without `clamp` and `target_error`. Time is the same for every sample,
+    whatever their number, and memory does not grow with it. `variance` is that of independent samples: of scrambled
+    points an upper bound as a rule, so two seeds tell more. Lights of some size are seen from the side that shines,
+    stop there what meets them, other lights' and the sky's light too, and are not there from behind; surfaces have two
+    sides. (`shadelab.render` draws no lights.) The camera's `near` and `far` cut nothing off: paths start at the eye.
+    Light that comes evenly from everywhere (background, `AmbientLight`, an environment of one colour) is left to
+    directions whatever the strategy: asking for it too took a bunny 1.6 to 2.6 times as long to the same error. Of a
+    panorama each surface draws two directions, and looks along the one kept by what it would bring. No firefly is
+    clamped: caustics from narrow mirrors converge slowly, and `variance` shows where, and `outliers` how often one
+    sample outweighed all before it.
+
+    What is made of the scene (arrays, a hierarchy: some 200 bytes a face) is kept for the next picture of it, until
+    another scene is traced or this one is gone, here and by `aovs`, `whitted` and `distribution`. Changes to its arrays
+    are seen, by hashes of them (0.3 ms a megabyte).
 
     Stopping at `target_error` is biased: a square that by chance has met no bright path yet thinks itself done.
     Measured over ten pictures of 24 × 16: a floor under an area light, none to 0.05 % at targets of 0.1 and 0.03; the
@@ -316,9 +318,8 @@ def _prepare(
     roulette = _arrays.count("roulette", roulette, 0, 1 << 16)
     kernel_filter = pixel_filter(filter)._kernel()
     limit = math.inf if clamp is None else _arrays.number("clamp", clamp, above=0.0)
-    sharing = cast("Sharing", _arrays.choice("instances", instances, get_args(Sharing)))
-    shared = shareable(scene, sharing, size[0] * size[1] * samples) if bvh is None else []
-    world = World(scene, bvh, _arrays.precision("dtype", dtype), all_directions=True, shared=shared)
+    rays = size[0] * size[1] * samples
+    world = World(scene, bvh, _arrays.precision("dtype", dtype), instances, rays, all_directions=True)
     made = _Prepared(world, size, start, samples, seed)
     made.depths, made.names, made.filter, made.clamp = (depth, roulette), names, kernel_filter, limit
     made.progress = _arrays.progress_callback(progress, "path trace")

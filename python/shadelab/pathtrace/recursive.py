@@ -12,6 +12,7 @@ from .. import _arrays
 from .._kernels import pathtrace as _kernels
 from ..accel import BVH
 from ._common import Size, lens_camera, picture_size
+from ._copies import Sharing
 from ._world import Moment, World
 from .estimate import Film, Traced
 from .filters import FilterName, PixelFilter, pixel_filter
@@ -32,6 +33,7 @@ def whitted(
     cutoff: float = 1e-3,
     start: int = 0,
     filter: FilterName | PixelFilter | None = None,
+    instances: Sharing = "auto",
     bvh: BVH | None = None,
     dtype: DTypeLike = np.float32,
     progress: bool | Callable[[int, int], object] | None = None,
@@ -53,7 +55,7 @@ def whitted(
         Branches that would carry less than this part of what they show are not followed.
     filter : str or PixelFilter, optional
         See `PixelFilter`; None looks through the pixel's centre with one sample, and is the box with more.
-    start, bvh, dtype, progress
+    start, instances, bvh, dtype, progress
         As in `path_trace`.
 
     Returns
@@ -92,11 +94,13 @@ def whitted(
     >>> whitted(world, (2, 2)).radiance[0, 0].round(6)
     array([0.5, 0.5, 0.5], dtype=float32)
     """
+    samples = _arrays.count("samples", samples, 1, 1 << 24)
     if filter is None:
         filter = PixelFilter("box", 0.5 if samples > 1 else 0.0)
     depth = _arrays.count("max_depth", max_depth, 0, 64)
     cut = _arrays.number("cutoff", cutoff, 0)
-    return _recursion("whitted", scene, size, samples, depth, seed, cut, start, filter, bvh, dtype, progress)
+    options = (filter, instances, bvh, dtype, progress)
+    return _recursion("whitted", scene, size, samples, depth, seed, cut, start, *options)
 
 
 def distribution(
@@ -108,6 +112,7 @@ def distribution(
     *,
     start: int = 0,
     filter: FilterName | PixelFilter = "box",
+    instances: Sharing = "auto",
     bvh: BVH | None = None,
     dtype: DTypeLike = np.float32,
     progress: bool | Callable[[int, int], object] | None = None,
@@ -123,7 +128,7 @@ def distribution(
         Of each pixel.
     max_depth : int
         The most mirrors in a row; 0 is light from the lights alone.
-    seed, start, filter, bvh, dtype, progress
+    seed, start, filter, instances, bvh, dtype, progress
         As in `path_trace`.
 
     Returns
@@ -157,7 +162,8 @@ def distribution(
     np.int32(4)
     """
     depth = _arrays.count("max_depth", max_depth, 0, 1 << 16)
-    return _recursion("distribution", scene, size, samples, depth, seed, 0.0, start, filter, bvh, dtype, progress)
+    options = (filter, instances, bvh, dtype, progress)
+    return _recursion("distribution", scene, size, samples, depth, seed, 0.0, start, *options)
 
 
 def _recursion(
@@ -170,6 +176,7 @@ def _recursion(
     cutoff: float,
     start: int,
     filter: FilterName | PixelFilter,
+    instances: Sharing,
     bvh: BVH | None,
     dtype: DTypeLike,
     progress: bool | Callable[[int, int], object] | None,
@@ -179,7 +186,7 @@ def _recursion(
     seed = _arrays.count("seed", seed, 0, 2**64 - 1)
     start = _arrays.count("start", start, 0, 2**32 - 1 - samples)
     kernel_filter = pixel_filter(filter)._kernel()
-    world = World(scene, bvh, _arrays.precision("dtype", dtype))
+    world = World(scene, bvh, _arrays.precision("dtype", dtype), instances, size[0] * size[1] * samples)
     call = _arrays.progress_callback(progress, method)
 
     def trace(moment: Moment) -> Traced:
@@ -198,7 +205,12 @@ def _recursion(
         counts = np.full(shape, moment.samples, np.int32)
         return Traced(mean.reshape(*shape, 3), variance.reshape(*shape, 3), counts, outliers.reshape(shape))
 
+    moments = world.moments(start, samples, seed)
+    first = next(moments)
+    if first.samples == samples:
+        # Nothing to merge.
+        return trace(first)
     film = Film((size[1], size[0]), world.dtype, False)
-    for moment in world.moments(start, samples, seed):
+    for moment in (first, *moments):
         film.add(trace(moment))
     return film.picture()

@@ -9,6 +9,19 @@ from numpy.typing import ArrayLike, DTypeLike, NDArray
 
 from .. import _arrays
 
+# More numbers than any memory holds; sizes of arrays below do not overflow.
+MOST = 2**40
+
+
+def many(name: str, value: Any, low: int = 0) -> int:
+    """How many points or rounds, in [low, 2**40]."""
+    return _arrays.count(name, value, low, MOST)
+
+
+def function(name: str, value: Any) -> None:
+    if not callable(value):
+        raise TypeError(f"{name}: expected a callable, got {type(value).__name__}")
+
 
 def unsigned(name: str, value: ArrayLike, dtype: DTypeLike) -> NDArray[Any]:
     """`value` as unsigned integers of `dtype`, refused rather than wrapped where they do not fit."""

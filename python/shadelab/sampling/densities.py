@@ -10,6 +10,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from .. import _arrays
 from .._arrays import Floats
+from ._arguments import function, many
 from .generators import Generator
 
 __all__ = ["Manifold", "Rejection", "inverse_transform", "manifold_density", "rejection_sample"]
@@ -80,6 +81,9 @@ def manifold_density(
     if u.ndim == 0:
         raise ValueError(f"parameters: expected shape (..., k), got {u.shape}")
     step = _arrays.number("step", step, above=0)
+    function("mapping", mapping)
+    if jacobian is not None:
+        function("jacobian", jacobian)
     shape, k = u.shape[:-1], u.shape[-1]
     flat = u.reshape(-1, k)
     points = _rows("mapping", mapping(flat), len(flat))
@@ -166,6 +170,7 @@ def inverse_transform(
         raise ValueError(f"low: expected a number below high, got {low:g} and {high:g}")
     if (cdf is None) == (pdf is None):
         raise ValueError(f"cdf, pdf: expected one of both, got {'neither' if cdf is None else 'both'}")
+    function("pdf" if cdf is None else "cdf", pdf if cdf is None else cdf)
     share = np.asarray(given, np.float64).ravel()
     valid = (share >= 0) & (share <= 1)
     out = np.full(share.shape, np.nan)
@@ -324,7 +329,11 @@ def rejection_sample(
     >>> disk.samples.shape, bool(abs(disk.acceptance - np.pi / 4) < 0.01)
     ((20000, 2), True)
     """
-    n = _arrays.count("n", n, 1)
+    n = many("n", n, 1)
+    function("density", density)
+    if proposal is not None:
+        if not isinstance(proposal, tuple | list) or len(proposal) != 2 or not all(map(callable, proposal)):
+            raise TypeError(f"proposal: expected two callables, got {proposal!r}")
     bound = _arrays.number("bound", bound, above=0)
     seed, max_tries = _arrays.count("seed", seed, 0, 2**64 - 1), _arrays.count("max_tries", max_tries, 1)
     a, b = (np.atleast_1d(np.asarray(_arrays.floats(k, v), np.float64)) for k, v in (("low", low), ("high", high)))

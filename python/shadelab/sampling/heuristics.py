@@ -86,11 +86,9 @@ def power_heuristic(pdfs: ArrayLike, counts: ArrayLike | None = None, *, power: 
     array([0.1, 0.9])
     """
     p = _arrays.floats("pdfs", pdfs)
-    if p.ndim == 0:
-        raise ValueError(f"pdfs: expected shape (..., k), got {p.shape}")
-    power = float(power)
-    if not power >= 1:
-        raise ValueError(f"power: expected a number of at least 1, got {power:g}")
+    if p.ndim == 0 or p.shape[-1] == 0:
+        raise ValueError(f"pdfs: expected shape (..., k) of one technique or more, got {p.shape}")
+    power = math.inf if power == math.inf else _arrays.number("power", power, 1)
     n = np.ones(p.shape[-1], p.dtype) if counts is None else _arrays.floats("counts", counts, p.dtype)
     if n.shape != p.shape[-1:] or not ((n >= 0) & np.isfinite(n)).all():
         raise ValueError(f"counts: expected {p.shape[-1]} numbers of at least 0, got shape {n.shape}")

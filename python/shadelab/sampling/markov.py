@@ -11,6 +11,7 @@ from numpy.typing import ArrayLike, NDArray
 from .. import _arrays
 from .._arrays import Floats
 from .._kernels import sampling as _kernels
+from ._arguments import many
 from .diagnostics import effective_sample_size, r_hat
 from .generators import Generator
 from .tabulated import Tabulated2D
@@ -151,8 +152,8 @@ def metropolis_hastings(
     >>> bool(abs(found.samples.std() - 1) < 0.1), bool(0.3 < found.acceptance.mean() < 0.6)
     (True, True)
     """
-    n, chains = _arrays.count("n", n, 1), _arrays.count("chains", chains, 1)
-    burn_in, thin = _arrays.count("burn_in", burn_in), _arrays.count("thin", thin, 1)
+    n, chains = many("n", n, 1), many("chains", chains, 1)
+    burn_in, thin = many("burn_in", burn_in), many("thin", thin, 1)
     seed = _arrays.count("seed", seed, 0, 2**64 - 1)
     _arrays.choice("acceptance", acceptance, ("hastings", "metropolis", "plain"))
     if scale is not None:
@@ -311,8 +312,8 @@ def gibbs(
     >>> bool(abs((x & y).mean() - 0.5) < 0.02), bool((~x & ~y).any())
     (True, False)
     """
-    n, chains = _arrays.count("n", n, 1), _arrays.count("chains", chains, 1)
-    burn_in, thin = _arrays.count("burn_in", burn_in), _arrays.count("thin", thin, 1)
+    n, chains = many("n", n, 1), many("chains", chains, 1)
+    burn_in, thin = many("burn_in", burn_in), many("thin", thin, 1)
     seed = _arrays.count("seed", seed, 0, 2**64 - 1)
     if isinstance(target, Sequence) and target and all(callable(f) for f in target):
         d = len(target)

@@ -10,6 +10,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from .. import _arrays
+from ._arguments import function, many
 from .generators import Generator
 from .heuristics import power_heuristic
 from .sequences import sobol
@@ -247,7 +248,7 @@ def integrate(
     >>> bool(quarter.interval[0] < np.pi / 4 < quarter.interval[1]), quarter.evaluations
     (True, 10000)
     """
-    n = _arrays.count("n", n, 4)
+    n = many("n", n, 4)
     seed = _arrays.count("seed", seed, 0, 2**64 - 1)
     _arrays.choice("method", method, tuple(_METHODS))
     _arrays.choice("heuristic", heuristic, ("balance", "power"))
@@ -289,14 +290,19 @@ def _problem(
     a, b = np.broadcast_arrays(a, b)
     if not (np.isfinite(a).all() and np.isfinite(b).all() and (a < b).all()):
         raise ValueError("low, high: expected a finite box, low below high")
-    several = [techniques] if isinstance(techniques, Technique) else list(techniques)
+    function("f", f)
+    several = [techniques] if isinstance(techniques, Technique) else techniques
+    if not isinstance(several, Sequence) or not all(isinstance(t, Technique) for t in several):
+        raise TypeError(f"techniques: expected one Technique or several, got {techniques!r}")
     wrong = not several or (method == "importance" and len(several) > 1)
     if method in ("importance", "mis") and wrong:
         raise ValueError(f"techniques: expected {'one' if method == 'importance' else 'some'}, got {len(several)}")
     if method == "control_variate":
         if control is None:
             raise ValueError("control: expected a function and its integral, got None")
+        if not isinstance(control, tuple | list) or len(control) != 2 or not callable(control[0]):
+            raise TypeError(f"control: expected a callable and its integral, got {control!r}")
         control = (control[0], _arrays.number("control", control[1]))
     if not callable(survival):
         survival = _arrays.number("survival", survival, high=1, above=0)
-    return _Problem(f, a, b - a, several, 1.0 if heuristic == "balance" else 2.0, control, survival)
+    return _Problem(f, a, b - a, list(several), 1.0 if heuristic == "balance" else 2.0, control, survival)

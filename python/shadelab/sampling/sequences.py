@@ -12,6 +12,7 @@ from numpy.typing import DTypeLike
 from .. import _arrays
 from .._arrays import Floats
 from .._kernels import sampling as _kernels
+from ._arguments import many
 from .generators import Generator
 
 __all__ = ["halton", "hammersley", "r2", "sobol"]
@@ -19,7 +20,7 @@ __all__ = ["halton", "hammersley", "r2", "sobol"]
 
 def _first(n: int, start: int, seed: int) -> tuple[int, int, int]:
     """How many points, the index of the first, and the seed, checked."""
-    n, start = _arrays.count("n", n), _arrays.count("start", start)
+    n, start = many("n", n), _arrays.count("start", start)
     if start + n > 2**64:
         raise ValueError(f"start: expected start + n of at most 2**64, got {start + n}")
     return n, start, _arrays.count("seed", seed, 0, 2**64 - 1)
@@ -218,7 +219,7 @@ def hammersley(
            [0.5 , 0.25],
            [0.75, 0.75]])
     """
-    n = _arrays.count("n", n)
+    n = many("n", n)
     dimensions = _arrays.count("dimensions", dimensions, 1, _kernels.SEQUENCE_DIMENSIONS + 1)
     rest = halton(n, max(dimensions - 1, 1), scramble=scramble, seed=seed, dtype=dtype)
     first: Floats = np.arange(n, dtype=np.float64)

@@ -12,6 +12,7 @@ from numpy.typing import DTypeLike
 from .. import _arrays
 from .._arrays import Floats
 from .._kernels import sampling as _kernels
+from ._arguments import many
 from .sequences import golden_steps
 
 __all__ = [
@@ -79,6 +80,8 @@ def stratified(
            [0.75, 0.25],
            [0.75, 0.75]])
     """
+    if not isinstance(counts, int | np.integer | Sequence | np.ndarray) or isinstance(counts, str | bytes):
+        raise TypeError(f"counts: expected an integer or several, got {type(counts).__name__}")
     axes = [counts] if isinstance(counts, int | np.integer) else list(counts)
     if not axes:
         raise ValueError("counts: expected at least one axis, got none")
@@ -259,7 +262,7 @@ def fibonacci_sphere(n: int, *, rotation: float = 0, dtype: DTypeLike = np.float
     >>> fibonacci_sphere(5)[:, 2]
     array([ 0.8,  0.4,  0. , -0.4, -0.8])
     """
-    out = _arrays.output("out", None, (_arrays.count("n", n), 3), _arrays.precision("dtype", dtype))
+    out = _arrays.output("out", None, (many("n", n), 3), _arrays.precision("dtype", dtype))
     _kernels.fibonacci_sphere(*_spiral(rotation), out)
     return out
 
@@ -299,7 +302,7 @@ def vogel_disk(n: int, *, rotation: float = 0, dtype: DTypeLike = np.float64) ->
     >>> np.hypot(*vogel_disk(2).T)
     array([0.5      , 0.8660254])
     """
-    out = _arrays.output("out", None, (_arrays.count("n", n), 2), _arrays.precision("dtype", dtype))
+    out = _arrays.output("out", None, (many("n", n), 2), _arrays.precision("dtype", dtype))
     _kernels.vogel_disk(*_spiral(rotation), out)
     return out
 
@@ -414,8 +417,7 @@ def blue_noise_mask(
     >>> bool((np.sort(mask, axis=None) == (np.arange(256) + 0.5) / 256).all())
     True
     """
-    width, height = size if isinstance(size, tuple) else (size, size)
-    width, height = _arrays.count("size", width, 1), _arrays.count("size", height, 1)
+    width, height = _arrays.counts("size", size if isinstance(size, tuple) else (size, size), 2, 1)
     if not 2 <= width * height <= 2**22:
         raise ValueError(f"size: expected 2 to 2**22 pixels, got {width} x {height}")
     sigma = _arrays.number("sigma", sigma, 0.3, 64)

@@ -1,47 +1,40 @@
 //! What the camera sees beside light.
 
 use super::camera::{CameraTuple, FilterTuple, camera, filter};
+use super::world::{World, WorldTuple};
 use crate::pathtrace::aov::{self, Aovs, Samples, Things};
-use crate::python::accel::Tree;
 use crate::python::array::{In, Out, run};
 use crate::real;
 use pyo3::prelude::*;
 
-/// `mesh`: positions, faces, normals, material ids, instance ids, albedo of the materials; `optional`: colours, and
-/// positions at time 1; `samples`: width, count, start, seed; `out` in the order of [`Aovs`].
+/// `tables`: instances of faces, instances of copies, albedo of the materials; `moved`: positions at time 1; `samples`:
+/// width, count, start, seed; `out` in the order of [`Aovs`].
 #[pyfunction]
 pub fn aovs(
     py: Python<'_>,
-    tree: &Tree,
-    mesh: [Bound<'_, PyAny>; 6],
-    optional: [Option<Bound<'_, PyAny>>; 2],
-    eye: CameraTuple,
-    pixel_filter: FilterTuple,
+    world: WorldTuple<'_>,
+    tables: [Bound<'_, PyAny>; 3],
+    moved: Option<Bound<'_, PyAny>>,
+    view: (CameraTuple, FilterTuple),
     samples: (usize, u32, u32, u64),
     out: [Bound<'_, PyAny>; 9],
     progress: Option<Py<PyAny>>,
 ) -> PyResult<()> {
-    let [positions, faces, normals, material_ids, instance_ids, albedo] = &mesh;
-    real!(positions, T => {
-        let (positions, faces) = (In::<T>::of("positions", positions)?, In::<i32>::of("faces", faces)?);
-        let (normals, albedo_table) = (In::<T>::of("normals", normals)?, In::<T>::of("albedo", albedo)?);
-        let material_ids = In::<i32>::of("material_ids", material_ids)?;
-        let instance_ids = In::<i32>::of("instance_ids", instance_ids)?;
-        let [colors, moved] = &optional;
-        let colors = colors.as_ref().map(|c| In::<T>::of("colors", c)).transpose()?;
+    let [of_faces, of_copies, albedo] = &tables;
+    real!(albedo, T => {
+        let world = World::<T>::of(&world)?;
+        let copies = world.copies()?;
+        let scene = world.surfaces(copies.as_ref())?;
+        let (of_faces, of_copies) = (In::<i32>::of("of_faces", of_faces)?, In::<i32>::of("of_copies", of_copies)?);
+        let albedo_table = In::<T>::of("albedo", albedo)?;
         let moved = moved.as_ref().map(|c| In::<T>::of("moved", c)).transpose()?;
         let things = Things {
-            bvh: tree.of::<T>()?,
-            positions: positions.items()?,
+            scene: &scene,
             moved: moved.as_ref().map(|m| m.items()).transpose()?,
-            faces: faces.items()?,
-            normals: normals.items()?,
-            colors: colors.as_ref().map(|c| c.items()).transpose()?,
-            material_ids: material_ids.slice()?,
-            instance_ids: instance_ids.slice()?,
+            instances: [of_faces.slice()?, of_copies.slice()?],
             albedo: albedo_table.items()?,
         };
-        let (eye, pixel_filter) = (camera::<T>(eye), filter(pixel_filter)?);
+        let (eye, pixel_filter) = (camera::<T>(view.0), filter(view.1)?);
         let (width, count, start, seed) = samples;
         let samples = Samples { width, count, start, seed };
         let [coverage, albedo, normal, depth, position, face, instance, material, motion] = &out;
