@@ -22,6 +22,7 @@ pub(crate) mod bin;
 pub(crate) mod clip;
 pub(crate) mod picture;
 pub(crate) mod pipeline;
+mod region;
 pub(crate) mod samples;
 pub(crate) mod setup;
 pub(crate) mod tile;

@@ -1,17 +1,16 @@
 //! Coverage and depth in one tile: the samples' nearest depths and the triangles they belong to, small enough for
 //! the cache.
 //!
-//! Edge functions are brought to the tile's corner in 64 bits and divided by 256, rounded down, which no longer changes
-//! their sign at samples; over a tile they then fit 32 bits, since edges that pass the tile by are dropped first.
 //! Triangles come in the order of their faces, and only a strictly nearer depth replaces another: of equal
 //! depths the lowest face wins.
 
 use super::bin::{Bins, Grid, PIECE, Piece};
+use super::region::{Region, edges_cover};
 use super::samples::{SUBPIXEL_BITS, SUBPIXELS};
-use super::setup::{Edges, Planes, Screen, area, planes, planes_in_lanes};
+use super::setup::{Planes, Screen, planes, planes_in_lanes};
 use crate::real::{Lanes, Real};
 use crate::simd::*;
-use fearless_simd::{i32x8, mask32x8, u32x8};
+use fearless_simd::{mask32x8, u32x8};
 
 pub const TILE_BITS: u32 = 6;
 /// Pixels along a tile's side.
@@ -146,7 +145,7 @@ impl<T: Real> Tile<T> {
                 let [i, j, k] = scene.faces[entry as usize];
                 let vertices =
                     [scene.snapped[i as usize], scene.snapped[j as usize], scene.snapped[k as usize]];
-                let Some(region) = self.region(scene, &vertices) else { continue };
+                let Some(region) = self.region(scene.grid, &vertices) else { continue };
                 if self.samples.len() == 1 && region.small {
                     let rows = region.rows(s, self.samples[0]);
                     if rows != 0 {
@@ -169,7 +168,7 @@ impl<T: Real> Tile<T> {
     /// Cut triangles are few and may be huge: their planes are worth double precision.
     #[inline(always)]
     fn draw_piece<S: Simd, const BEHIND: bool>(&mut self, s: S, scene: &Scene<T>, piece: &Piece) {
-        if let Some(region) = self.region(scene, &piece.vertices) {
+        if let Some(region) = self.region(scene.grid, &piece.vertices) {
             self.draw_region::<S, BEHIND>(s, &region, || {
                 let clip = scene.faces[piece.face as usize].map(|k| scene.clip[k as usize]);
                 let clip = clip.map(|v| v.map(|c| c.to_f64()));
@@ -239,30 +238,9 @@ impl<T: Real> Tile<T> {
         batch.len = 0;
     }
 
-    /// The pixels of the tile that a triangle may cover, if any.
     #[inline(always)]
-    fn region(&self, scene: &Scene<T>, v: &[[i32; 2]; 3]) -> Option<Region> {
-        let v = if area(v) > 0 { *v } else { [v[0], v[2], v[1]] };
-        let [[x0, x1], [y0, y1]] = scene.grid.bounds(&v);
-        let (tx, ty) = (self.x as i32, self.y as i32);
-        let x = [(x0 - tx).max(0), (x1 - tx).min(self.width as i32 - 1)];
-        let y = [(y0 - ty).max(0), (y1 - ty).min(self.height as i32 - 1)];
-        let mut edges = Edges::new(&v, [tx << SUBPIXEL_BITS, ty << SUBPIXEL_BITS]);
-        // Edges of small triangles fit 32 bits over the tile as they are; others only if they cross it.
-        let large = large(&v);
-        if large {
-            for i in 0..3 {
-                let (least, most) = edges.range(i, (TILE as i64) << SUBPIXEL_BITS);
-                if most < 0 {
-                    return None;
-                }
-                if least >= 0 {
-                    (edges.a[i], edges.b[i], edges.c[i]) = (0, 0, 0);
-                }
-            }
-        }
-        let small = !large & (x[1] - x[0] < LANES as i32) & (y[1] - y[0] < LANES as i32);
-        Some(Region { edges, x, y, small })
+    fn region(&self, grid: &Grid, v: &[[i32; 2]; 3]) -> Option<Region> {
+        Region::of(grid, [self.x, self.y], [self.width, self.height], v)
     }
 
     /// Draws a triangle of any size; `planes` is asked for once a sample is covered.
@@ -342,17 +320,6 @@ pub fn columns<T: Real, S: Simd>(s: S) -> T::V8<S> {
     T::V8::from_slice(s, &columns)
 }
 
-/// Which of the eight pixels from `(x, y)` no edge excludes, by bits.
-#[inline(always)]
-fn edges_cover<S: Simd>(s: S, edges: &Edges, corner: &[i32; 3], x: i32, y: i32) -> u64 {
-    let iota = i32x8::from_slice(s, &[0, 1, 2, 3, 4, 5, 6, 7]);
-    let mut e = [iota; 3];
-    for i in 0..3 {
-        e[i] = iota * edges.a[i] + (corner[i] + edges.a[i] * x + edges.b[i] * y);
-    }
-    (e[0] | e[1] | e[2]).simd_ge(i32x8::splat(s, 0)).to_bitmask()
-}
-
 impl<T: Real> Scene<'_, T> {
     /// Vertices of an uncut face, and the pixel about which its planes are taken: that of the vertex with the largest
     /// `w`, where the weights are smallest, so that least is lost by cancellation.
@@ -389,64 +356,6 @@ struct Small {
 struct Batch {
     triangles: [Small; LANES],
     len: usize,
-}
-
-/// Pixels of a tile that a triangle may cover, and its edges about the tile's corner.
-struct Region {
-    edges: Edges,
-    /// First and last column and row.
-    x: [i32; 2],
-    y: [i32; 2],
-    /// At most eight by eight pixels.
-    small: bool,
-}
-
-impl Region {
-    /// Edge functions in pixels, rounded down, at a sample of the tile's first pixel.
-    #[inline(always)]
-    fn at_sample(&self, [sx, sy]: [i32; 2]) -> [i32; 3] {
-        let mut out = [0; 3];
-        for i in 0..3 {
-            let e = &self.edges;
-            let c = e.c[i] + e.a[i] as i64 * sx as i64 + e.b[i] as i64 * sy as i64;
-            out[i] = (c >> SUBPIXEL_BITS) as i32;
-        }
-        out
-    }
-
-    /// Coverage of a small region, eight bits a row.
-    #[inline(always)]
-    fn rows<S: Simd>(&self, s: S, sample: [i32; 2]) -> u64 {
-        let corner = self.at_sample(sample);
-        let iota = i32x8::from_slice(s, &[0, 1, 2, 3, 4, 5, 6, 7]);
-        let Edges { a, b, .. } = self.edges;
-        let mut e = [iota; 3];
-        for i in 0..3 {
-            e[i] = iota * a[i] + (corner[i] + a[i] * self.x[0] + b[i] * self.y[0]);
-        }
-        let mut rows = 0;
-        for y in 0..=self.y[1] - self.y[0] {
-            let inside = (e[0] | e[1] | e[2]).simd_ge(i32x8::splat(s, 0)).to_bitmask();
-            rows |= inside << (LANES as i32 * y);
-            for i in 0..3 {
-                e[i] += b[i];
-            }
-        }
-        rows
-    }
-}
-
-/// Whether edge functions could exceed 32 bits over a tile that the triangle touches.
-#[inline(always)]
-fn large(v: &[[i32; 2]; 3]) -> bool {
-    let limit = (TILE as u32) << SUBPIXEL_BITS;
-    let mut span = 0;
-    for axis in 0..2 {
-        let low = v[0][axis].min(v[1][axis]).min(v[2][axis]);
-        let high = v[0][axis].max(v[1][axis]).max(v[2][axis]);
-        span = low.abs_diff(high).max(span);
-    }
-    span >= limit
 }
 
 /// The end of the stretch of equal triangles that starts at `start`.
