@@ -64,6 +64,8 @@ impl<T: Real> Rows<'_, T> {
 }
 
 const PIECE: usize = 1 << 12;
+/// Of values, which are cheap: long runs of memory.
+const RUN: usize = 1 << 14;
 
 /// NaN where a parameter is.
 pub fn eval_many<T: Real>(
@@ -77,7 +79,7 @@ pub fn eval_many<T: Real>(
         Some(Bsdf::RoughConductor(metal)) => OneMetal::of(&metal),
         _ => None,
     };
-    parallel::for_each(watch, (wi, wo, out), PIECE, |first, (wi, wo, out)| {
+    parallel::for_each(watch, (wi, wo, out), RUN, |first, (wi, wo, out)| {
         dispatch!(s => {
             if let Some(metal) = metal {
                 metal.eval(s, wi, wo, out);
@@ -186,7 +188,7 @@ pub fn pdf_many<T: Real>(
     wo: &[[T; 3]],
     out: &mut [[T; 1]],
 ) -> Result<(), Interrupted> {
-    parallel::for_each(watch, (wi, wo, out), PIECE, |first, (wi, wo, out)| {
+    parallel::for_each(watch, (wi, wo, out), RUN, |first, (wi, wo, out)| {
         dispatch!(s => {
             if rows.ids.is_none() && lanes::<T, _, Density, 1>(s, &rows, first, (wi, wo), out) {
                 return;

@@ -3,11 +3,12 @@
 `python tests/benchmarks/light.py [threads]`
 
 Root mean square errors are over the picture, relative to its brightest pixel, against 2^13 samples. Times are processor
-seconds over threads, since neighbours on the machine then count for less; best of three, rounds alternate.
+seconds over threads, since neighbours on the machine then count for less; every run takes some tenths of a second, best
+of five, rounds alternate.
 """
 
-import resource
 import sys
+import time
 
 import numpy as np
 import shadelab as sl
@@ -22,10 +23,9 @@ def scene():
 
 
 def seconds(run):
-    before = resource.getrusage(resource.RUSAGE_SELF)
+    before = time.process_time()
     run()
-    after = resource.getrusage(resource.RUSAGE_SELF)
-    return after.ru_utime - before.ru_utime
+    return time.process_time() - before
 
 
 def main():
@@ -44,8 +44,8 @@ def main():
         rows = [("ltc", dict(method="ltc")), ("representative point", dict(method="representative_point"))]
         rows += [(f"{n} samples", dict(samples=n, seed=1)) for n in (1, 4, 16, 64, 256)]
         times = {name: [] for name, _ in rows}
-        repeat = {name: 5 if "samples" not in how or how["samples"] < 16 else 1 for name, how in rows}
-        for _ in range(3):
+        repeat = {name: max(128 // how.get("samples", 2), 1) for name, how in rows}
+        for _ in range(5):
             for name, how in rows:
                 times[name].append(seconds(lambda how=how, n=repeat[name]: shade(n, **how)) / repeat[name])
         errors = {name: np.sqrt(((shade(**how) - exact) ** 2).mean()) / peak for name, how in rows}
