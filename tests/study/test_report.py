@@ -126,6 +126,20 @@ def test_difference_maps_are_white_without_error_and_signed():
     assert (outside > bright).all()  # paler off the mask
 
 
+def test_techniques_of_one_colour_have_other_markers():
+    from shadelab.study import chart
+
+    seen = {(chart.COLORS[i % len(chart.COLORS)], chart.marker_path(i, 0, 0)) for i in range(30)}
+    assert len(seen) == 30
+
+
+def test_settings_stand_in_rows_case_by_case(directory, measured):
+    table = re.search(r'<table class="shadelab-table cases">(.*?)</table>', (directory / "index.html").read_text())[1]
+    rows = [re.findall(r"<t[hd]>(.*?)</t[hd]>", row) for row in table.split("<tr>")[1:]]
+    assert rows[0] == ["", "easy &lt;scene&gt;", "other"] and all(len(row) == 3 for row in rows)
+    assert {row[0].split("(")[0] for row in rows[1:]} == {"biased", "noisy"}
+
+
 def test_tables_star_the_front(measured):
     front = {s.setting for s in measured.front()}
     lines = [line for line in str(measured).splitlines() if line.startswith(("* ", "  "))]

@@ -8,7 +8,7 @@ import pytest
 import shadelab as sl
 from shadelab import study
 from shadelab.light import PointLight
-from shadelab.study.questions import _visibility, shadow_aliasing, shadow_bias, shadow_memory
+from shadelab.study.questions import _fields, _visibility, shadow_aliasing, shadow_bias, shadow_memory
 
 SIZE = (96, 54)
 FAST = {"size": SIZE, "rounds": 3, "patience": 0.0, "cache": False}
@@ -31,7 +31,9 @@ def test_five_scenes_that_break_someone(module):
 
 
 def test_aliasing_falls_with_resolution_and_is_worse_near():
-    result = study.run("shadow aliasing", "contact", **FAST)
+    question = shadow_aliasing.question()
+    few = [c for c in question.candidates if c.name == "hard"]
+    result = study.run(study.Question(**{**vars(question), "candidates": few}), "contact", **FAST)
     for view in ("near", "far"):
         hard = by_setting(result, "hard", view)
         values = [hard[(n,)].error.value for n in (256, 1024, 4096)]
@@ -159,12 +161,55 @@ def test_fields_in_double_are_double():
     for dtype in (np.float32, np.float64):
         case = study.Case("contact", "", scene, scene.camera, (48, 27), np.dtype(dtype), 0)
         inputs = shadow_memory._setup(case)
-        grid = shadow_memory._grid(inputs, 16)
-        assert grid.distances.dtype == dtype and shadow_memory._grid(inputs, 16) is grid
-        found[dtype] = shadow_memory._field(inputs, None, 16)
+        grid = _fields._grid(inputs, 16)
+        assert grid.distances.dtype == dtype and _fields._grid(inputs, 16) is grid
+        found[dtype] = _fields.field_lit(inputs, None, 16)
     assert all(v.dtype == k for k, v in found.items())
-    assert len(shadow_memory._FIELDS) >= 1
+    assert len(_fields._FIELDS) >= 1
     # Nothing is kept beyond the case.
     del inputs, grid
     gc.collect()
-    assert not len(shadow_memory._FIELDS)
+    assert not len(_fields._FIELDS)
+
+
+def test_pages_and_cascades_stand_beside_one_map():
+    question = shadow_aliasing.question()
+    few = [c for c in question.candidates if c.name in ("hard", "cascades", "pages")]
+    result = study.run(study.Question(**{**vars(question), "candidates": few}), "long view, sun", **FAST)
+    for view in ("near", "far"):
+        hard, parts, pages = (by_setting(result, n, view) for n in ("hard", "cascades", "pages"))
+        # Texels that follow the view do with a fraction of them.
+        assert parts[(1024, 4)].error.value < 0.8 * hard[(2048,)].error.value
+        assert pages[(16384, 4)].error.value < 0.8 * hard[(2048,)].error.value
+        assert pages[(16384, 4)].counters["bytes"] < hard[(2048,)].counters["bytes"]
+        assert parts[(1024, 4)].counters["bytes"] == hard[(2048,)].counters["bytes"]
+    # Point lights have no cascades.
+    scene = _visibility.BREAKING["contact"]()
+    inputs = _visibility.pointlike(study.Case("contact", "", scene, scene.camera, SIZE, np.dtype(np.float32), 0))
+    assert "parallel" in next(c for c in few if c.name == "cascades").domain(inputs)
+
+
+def test_moments_differ_by_rounding_alone_between_precisions():
+    # The bias that single precision needs stands in double as well.
+    scene = _visibility.BREAKING["long view"]()
+    lit = []
+    for dtype in (np.float32, np.float64):
+        case = study.Case("long view", "", scene, scene.camera, SIZE, np.dtype(dtype), 0)
+        inputs = _visibility.pointlike(case)
+        maps = shadow_aliasing._moment_maps("moment")(inputs, 256, sigma=1.0)
+        lit.append(shadow_aliasing._moment(inputs, maps, 256, 1.0))
+    assert np.sqrt(np.mean((lit[0] - lit[1]) ** 2)) < 0.02
+
+
+def test_colours_count_by_their_luminance(tmp_path):
+    scene = _visibility.BREAKING["contact"]()
+    case = study.Case("contact", "far", scene, scene.camera, SIZE, np.dtype(np.float32), 0)
+    exact = _visibility.traced(_visibility.pointlike(case))
+    sl.scene.save_image(tmp_path / "white.exr", np.repeat(exact[..., None], 3, -1).astype(np.float32))
+    sl.scene.save_image(tmp_path / "green.exr", (exact[..., None] * [0.0, 1.0, 0.0]).astype(np.float32))
+    question = shadow_aliasing.question()
+    few = [c for c in question.candidates if c.name == "hard"]
+    given = [study.External(tmp_path / f"{name}.exr", ms=1.0) for name in ("white", "green")]
+    result = study.run(study.Question(**{**vars(question), "candidates": few}), "contact", candidates=given, **FAST)
+    white, green = (next(r for r in result.records if r.technique == n) for n in ("white", "green"))
+    assert white.error.value < 1e-6 and 0.1 < green.error.value < 0.3

@@ -101,7 +101,7 @@ def figure(study: Study) -> Figure:
     axes.plot([x for x, _ in line], [y for _, y in line], color="0.6", linewidth=1, zorder=1)
     for i, technique in enumerate(techniques):
         own = [p for p in points if p.technique == i]
-        color, marker = COLORS[i % len(COLORS)], MARKERS[i % len(MARKERS)]
+        color, marker = COLORS[i % len(COLORS)], MARKERS[_marker(i)]
         for p in own:
             dim = 1.0 if p.on_front else 0.35
             spans: dict[str, Any] = {
@@ -257,9 +257,14 @@ def cases_svg(study: Study, settings: Sequence[tuple[str, dict[str, Any]]], widt
     return "".join(out)
 
 
+def _marker(technique: int) -> int:
+    """Which marker a technique has: another where colours come round."""
+    return (technique + technique // len(COLORS)) % len(MARKERS)
+
+
 def marker_path(technique: int, x: float, y: float, r: float = 5.5) -> str:
     """The outline of a technique's marker."""
-    kind = technique % len(MARKERS)
+    kind = _marker(technique)
     if kind == 0:
         return f"M{x - r:.1f} {y:.1f}a{r} {r} 0 1 0 {2 * r} 0a{r} {r} 0 1 0 {-2 * r} 0z"
     sides, turn = ((4, 45), (3, -90), (4, 0), (3, 90), (6, 0), (5, -90), (8, 0))[kind - 1]

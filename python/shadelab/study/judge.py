@@ -11,6 +11,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from .. import color
 from . import statistics
 from .question import Candidate, Case, External, Question
 from .records import Record, setting_text
@@ -232,6 +233,9 @@ def _judged(judge: Judge, external: External, case: Case, picture: Array) -> Rec
     shape = judge.halves.a.shape
     if picture.ndim == 3 and len(shape) == 3 and picture.shape[2] > shape[2]:
         picture = picture[..., : shape[2]]
+    elif picture.ndim == 3 and len(shape) == 2 and picture.shape[2] in (3, 4):
+        # Where answers are one number a pixel, of colours their luminance.
+        picture = color.luminance(picture[..., :3])
     if picture.shape != shape:
         raise ValueError(f"{external.title}: expected a picture of shape {shape}, got {picture.shape}")
     strays = int(np.count_nonzero(~np.isfinite(picture)))

@@ -55,7 +55,8 @@ table.plain{border-collapse:collapse;font-size:.9em}
 table.plain th,table.plain td{padding:.25em .7em .25em 0;text-align:left;border-bottom:1px solid var(--line)}
 pre{overflow-x:auto;background:var(--box);padding:.8em;font-size:.85em}
 main .shadelab-table td:first-child{white-space:normal;min-width:12em;max-width:22em;overflow-wrap:anywhere}
-main .cases th{vertical-align:bottom}
+main .cases th{vertical-align:bottom;white-space:normal;line-height:1.25}
+main .cases th,main .cases td{padding:.25em .45em}
 @media screen and (max-width:720px){
 .wide{display:none}.narrow{display:block}
 .strip{grid-template-columns:1fr 1fr}
@@ -194,8 +195,10 @@ def _cases(study: Study, choice: Choice | None) -> str:
         f'<div class="narrow">{chart.cases_svg(study, settings, 380)}</div>',
         _legend(study),
     ]
-    for title, (head, *rows) in cases_table(study, settings):
-        heads = "".join(f"<th>{_text(name).replace('(', '<br>(')}</th>" for name in head)
+    for title, table in cases_table(study, settings):
+        # A page is narrow, and cases have shorter names than settings: these stand in rows.
+        head, *rows = zip(*table, strict=True)
+        heads = "".join(f"<th>{_text(name)}</th>" for name in head)
         body = "".join("<tr>" + "".join(f"<td>{_text(cell)}</td>" for cell in row) + "</tr>" for row in rows)
         out.append(f'<h3>{_text(title)}</h3><div class="scroll"><table class="shadelab-table cases"><tr>{heads}</tr>')
         out.append(f"{body}</table></div>")

@@ -157,7 +157,8 @@ class External:
     ----------
     path : path, or mapping of str to path
         A picture (EXR, HDR, PNG) of the question's first view; or one for each view or scene, by its name
-        ("view", "scene" or "scene, view").
+        ("view", "scene" or "scene, view"). Where answers are one number a pixel (lit fractions), of colours their
+        luminance counts.
     ms : float
         Milliseconds a frame, as measured where the picture was made.
     name : str, optional

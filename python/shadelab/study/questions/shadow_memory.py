@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-import threading
-import weakref
 from typing import Any
 
 import numpy as np
@@ -11,6 +9,7 @@ from numpy.typing import NDArray
 
 from ... import shadow
 from ..question import Candidate, Mask, MonteCarlo, Question
+from ._fields import field_counters, field_lit
 from ._visibility import BREAKING, display, line, lit_error, spread
 from .soft_shadows import (
     _MASK_ABOUT,
@@ -50,36 +49,6 @@ def _estimate(inputs: Inputs, samples: int, seed: int, start: int, where: Array 
             )
         left, done = left - n, done + n
     return spread(inputs, lit / samples)
-
-
-def _grid(inputs: Inputs, field_resolution: int) -> Any:
-    """The distance field of what casts shadows but for what lies flat under all: built once a scene, as trees are."""
-    low, high = inputs.caster_positions.min(0), inputs.caster_positions.max(0)
-    solid = np.ptp(inputs.caster_positions[inputs.caster_faces], axis=1).max(-1) < 0.4 * (high - low).max()
-    with _LOCK:
-        kept = _FIELDS.setdefault(inputs, {})
-        if field_resolution not in kept:
-            bvh = type(inputs.bvh)(inputs.caster_positions, inputs.caster_faces[solid])
-            seen = inputs.caster_positions[np.unique(inputs.caster_faces[solid])]
-            margin = 0.1 * np.ptp(seen, axis=0).max()
-            box = [seen.min(0) - margin, seen.max(0) + margin]
-            dtype = inputs.points.dtype
-            kept[field_resolution] = shadow.distance_grid(bvh, box, resolution=field_resolution, dtype=dtype)
-        return kept[field_resolution]
-
-
-_FIELDS: weakref.WeakKeyDictionary[Inputs, dict[int, Any]] = weakref.WeakKeyDictionary()
-"""The fields of each case, as long as its inputs live."""
-_LOCK = threading.Lock()
-
-
-def _field(inputs: Inputs, prepared: None, field_resolution: int) -> Array:
-    grid = _grid(inputs, field_resolution)
-    return np.stack([shadow.distance_field(grid, inputs.points, inputs.geometric, l) for l in inputs.lights])
-
-
-def _field_counters(inputs: Inputs, field_resolution: int) -> dict[str, float]:
-    return {"bytes": _grid(inputs, field_resolution).nbytes}
 
 
 _ABOUT = """What stays in memory for an area light's shadow: a map of depths, a map of moments beside it (in 16 bits, in
@@ -161,9 +130,9 @@ def question() -> Question:
             ),
             Candidate(
                 "distance_field",
-                _field,
+                field_lit,
                 {"field_resolution": (16, 32, 48)},
-                counters=_field_counters,
+                counters=field_counters,
                 about="Four bytes a node, for all lights together; what is thinner than a cell is lost. Built once a "
                 "scene and not counted in ms.",
             ),

@@ -14,11 +14,16 @@ from ... import color, image, light, pathtrace, renderer, shadow
 from ...accel import BVH
 from ...scene import Scene
 from ..question import Candidate, Case, Mask, Metric, MonteCarlo, Question
+from ._fields import field_counters, field_lit
 from ._shadow_scenes import SCENES, views
 
 __all__ = ["question"]
 
 Array = NDArray[Any]
+
+MOMENT_BIAS = 3e-7
+"""As published for single precision; taken in double as well, where far less would do, so that what the two differ by
+is what rounding does."""
 
 _MASK_RAYS = 64
 """Rays that find the penumbrae: a pixel of which some of these are blocked and some pass is in the mask."""
@@ -53,6 +58,7 @@ class Inputs:
     unshadowed: Array
     exposure: float
     seed: int
+    camera: Any
 
     def spread(self, values: Array) -> Array:
         """Values of receivers as a picture, zero where there is no surface."""
@@ -107,7 +113,7 @@ def _setup(case: Case) -> Inputs:
     positions = arrays.positions.astype(case.dtype)
     return Inputs(
         lights, positions, arrays.faces, bvh, covered, points, geometric, shading, base, eye, unshadowed,
-        exposure, case.seed,
+        exposure, case.seed, camera,
     )  # fmt: skip
 
 
@@ -204,12 +210,35 @@ def _moment_maps(technique: str) -> Any:
     return prepare
 
 
+def _pages(inputs: Inputs, resolution: int, border: int = 64, per_pixel: float = 1.0, **knobs: Any) -> list[Any]:
+    """Of a large map of each light the pages that the view looks into, so many texels a pixel, drawn each frame."""
+    pixel = 2.0 * math.tan(float(inputs.camera.fov_y) / 2.0) / inputs.covered.shape[0] / per_pixel
+    how: dict[str, Any] = {"border": border, "eye": inputs.camera.eye, "pixel": pixel}
+    mesh = inputs.caster_positions, inputs.caster_faces
+    return [shadow.virtual_shadow_map(*mesh, l, inputs.points, resolution, **how) for l in inputs.lights]
+
+
+def _page_counters(technique: str) -> Any:
+    """As `_counters`; what stays resident are pages."""
+
+    def count(
+        inputs: Inputs, resolution: int, border: int = 64, per_pixel: float = 1.0, **knobs: Any
+    ) -> dict[str, float]:
+        cost = shadow.cost(technique, itemsize=inputs.points.itemsize, **knobs)
+        resident = sum(m.bytes for m in _pages(inputs, resolution, border, per_pixel))
+        return {"taps/px": cost.texel_reads * len(inputs.lights), "rays/px": 0, "bytes": resident}
+
+    return count
+
+
 def _filtered(technique: str) -> Any:
     """Lookups into moment maps; what is not a knob of the map is one of the lookup."""
     lookup = getattr(shadow, technique)
 
     def run(inputs: Inputs, maps: list[Any], resolution: int, light_bleeding: float = 0.0, **of_map: Any) -> Array:
-        each = {"light_bleeding": light_bleeding}
+        each: dict[str, Any] = {"light_bleeding": light_bleeding}
+        if maps[0].kind == "moment" and "bits" not in of_map:
+            each["moment_bias"] = MOMENT_BIAS
         return np.stack([lookup(m, inputs.points, inputs.geometric, **each) for m in maps])
 
     return run
@@ -323,7 +352,27 @@ def _candidates() -> list[Candidate]:
             about="Percentage-closer soft shadows: filters over the width that the mean depth of the blockers calls "
             "for. Blockers at several depths count as one; what the light's centre does not see cannot block.",
         ),
+        Candidate(
+            "pcss on pages",
+            _pcss,
+            {"resolution": (4096, 16384), "blocker_samples": (16,), "filter_samples": (32,)},
+            _pages,
+            _page_counters("pcss"),
+            domain=_area_light,
+            seeded=True,
+            about="The same in pages of a large map, drawn where the view looks, in texels as fine as its pixels. "
+            "Beyond the pages nothing blocks: very wide penumbrae grow too light.",
+        ),
         *_of_moments(),
+        Candidate(
+            "distance_field",
+            field_lit,
+            {"field_resolution": (16, 48)},
+            counters=field_counters,
+            domain=_area_light,
+            about="Cones towards the light through a field of distances: no noise. What is thinner than a cell of the "
+            "field is lost, and penumbrae are as of one blocker. The field is built once for a scene and not counted.",
+        ),
         Candidate(
             "ray_traced",
             _ray_traced,
