@@ -73,10 +73,8 @@ impl Tally {
     #[inline(always)]
     pub fn variance(&self) -> [f64; 3] {
         let n = f64::from(self.count);
-        self.squares.map(
-            #[inline(always)]
-            |s| if n < 2.0 { f64::INFINITY } else { s / (n * (n - 1.0)) },
-        )
+        let (known, freedom, [a, b, c]) = (n >= 2.0, n * (n - 1.0), self.squares);
+        if known { [a / freedom, b / freedom, c / freedom] } else { [f64::INFINITY; 3] }
     }
 
     /// Takes in the samples of another.

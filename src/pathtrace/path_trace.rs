@@ -117,12 +117,16 @@ impl<'a> Tiles<'a> {
         let first = [i % self.columns * self.side[0], i / self.columns * self.side[1]];
         (first, [self.side[0].min(self.width - first[0]), self.side[1].min(self.height - first[1])])
     }
-    /// The number in the picture of the pixel at a place.
+    /// The number in the picture, the column and the row of the pixel at a place.
     #[inline(always)]
-    fn pixel(&self, x: usize, y: usize) -> usize {
+    fn pixel(&self, x: usize, y: usize, width: usize) -> (usize, [usize; 2]) {
         match self.list {
-            Some(list) => list[x] as usize,
-            None => y * self.width + x,
+            Some(list) => {
+                let pixel = list[x] as usize;
+                (pixel, [pixel % width, pixel / width])
+            }
+            // The picture's own width.
+            None => (y * self.width + x, [x, y]),
         }
     }
 }
@@ -133,29 +137,48 @@ struct Sheets<'a, T> {
     variance: Picture<'a, [T; 3]>,
     outliers: Option<Picture<'a, i32>>,
     removed: Option<Picture<'a, [T; 3]>>,
+    /// Of all passes so far, if there are several.
+    kept: Option<Picture<'a, Tally>>,
 }
 
 impl<T: Real> Sheets<'_, T> {
     /// # Safety
-    /// No other row in use may overlap this one.
-    unsafe fn put(&self, x: usize, y: usize, tallies: &[Tally]) {
-        let n = tallies.len();
+    /// The pixel must not be in use elsewhere.
+    #[inline(always)]
+    unsafe fn put(&self, x: usize, y: usize, tally: &Tally) {
         // Sound: as the caller promises.
-        let (mean, variance) = unsafe { (self.mean.row(x, y, n), self.variance.row(x, y, n)) };
-        for (c, tally) in tallies.iter().enumerate() {
-            (mean[c], variance[c]) = (tally.mean.map(T::of), tally.variance().map(T::of));
-        }
-        if let Some(outliers) = &self.outliers {
-            // Sound: as above.
-            let row = unsafe { outliers.row(x, y, n) };
-            row.iter_mut().zip(tallies).for_each(|(o, t)| *o = t.outliers as i32);
-        }
-        if let Some(removed) = &self.removed {
-            // Sound: as above.
-            let row = unsafe { removed.row(x, y, n) };
-            row.iter_mut().zip(tallies).for_each(|(r, t)| *r = t.removed.map(T::of));
+        unsafe {
+            self.mean.row(x, y, 1)[0] = narrow(tally.mean);
+            self.variance.row(x, y, 1)[0] = narrow(tally.variance());
+            if let Some(outliers) = &self.outliers {
+                outliers.row(x, y, 1)[0] = tally.outliers as i32;
+            }
+            if let Some(removed) = &self.removed {
+                removed.row(x, y, 1)[0] = narrow(tally.removed);
+            }
+            if let Some(kept) = &self.kept {
+                kept.row(x, y, 1)[0] = *tally;
+            }
         }
     }
+
+    /// What earlier passes have gathered.
+    ///
+    /// # Safety
+    /// As of `put`.
+    #[inline(always)]
+    unsafe fn before(&self, x: usize, y: usize) -> Tally {
+        match &self.kept {
+            // Sound: as the caller promises.
+            Some(kept) => unsafe { kept.row(x, y, 1)[0] },
+            None => Tally::default(),
+        }
+    }
+}
+
+#[inline(always)]
+fn narrow<T: Real>([a, b, c]: [f64; 3]) -> [T; 3] {
+    [T::of(a), T::of(b), T::of(c)]
 }
 
 /// Whether a material is Lambert's diffuser, of the albedo with which its row begins.
@@ -192,6 +215,7 @@ pub fn path_trace<T: Real>(
         variance: Picture::new(film.variance, width, height),
         outliers: film.outliers.map(|o| Picture::new(o, width, height)),
         removed: film.removed.map(|r| Picture::new(r, width, height)),
+        kept: (passes > 1).then(|| Picture::new(&mut kept, width, height)),
     };
     for pass in 0..passes {
         let done = pass * PASS;
@@ -199,25 +223,11 @@ pub fn path_trace<T: Real>(
         let options = Options { start: options.start + done, samples, ..options };
         let tracer = Tracer { scene, lighting: &lighting, diffuse: &diffuse, draws, options };
         let tiles = Tiles::new(options.width, count, pixels, samples);
-        let kept = (passes > 1).then(|| Picture::new(&mut kept, width, height));
-        parallel::run(watch, tiles.count(), |i| {
-            let (first, side) = tiles.place(i);
-            let mut tallies = vec![Tally::default(); side[0] * side[1]];
-            dispatch!(s => tile(s, &tracer, camera, filter, &tiles, first, side, &mut tallies));
-            for (r, row) in tallies.chunks_mut(side[0]).enumerate() {
-                let (x, y) = (first[0], first[1] + r);
-                if let Some(kept) = &kept {
-                    // Sound: tiles do not overlap.
-                    let kept = unsafe { kept.row(x, y, side[0]) };
-                    for (kept, tally) in kept.iter_mut().zip(row.iter_mut()) {
-                        kept.merge(tally);
-                        *tally = *kept;
-                    }
-                }
-                // Sound: as above.
-                unsafe { sheets.put(x, y, row) };
-            }
-        })?;
+        parallel::run(
+            watch,
+            tiles.count(),
+            |i| dispatch!(s => tile(s, &tracer, camera, filter, &tiles, tiles.place(i), &sheets)),
+        )?;
     }
     Ok(())
 }
@@ -230,31 +240,48 @@ fn tile<T: Real, S: Simd>(
     camera: &Camera<T>,
     filter: &Filter,
     tiles: &Tiles<'_>,
-    first: [usize; 2],
-    side: [usize; 2],
-    tallies: &mut [Tally],
+    (first, side): ([usize; 2], [usize; 2]),
+    sheets: &Sheets<'_, T>,
 ) {
     let options = tracer.options;
-    let mut wave = Wave::new();
-    let pixels = tallies.len();
+    let mut wave = Wave::new(WAVE);
+    let pixels = side[0] * side[1];
     // Samples of each pixel, pixels of each wave.
     let each = (WAVE / pixels).clamp(1, options.samples as usize) as u32;
     let group = (WAVE / each as usize).clamp(1, pixels);
+    // Of samples so far, where pixels have more than a wave takes.
+    let mut tallies: Vec<Tally> = Vec::new();
     let order = order(side);
     for some in order.chunks(group) {
+        tallies.clear();
         for start in (0..options.samples).step_by(each as usize) {
             let count = each.min(options.samples - start);
             wave.clear();
             for &[x, y] in some {
-                let pixel = tiles.pixel(first[0] + x as usize, first[1] + y as usize);
+                let pixel = tiles.pixel(first[0] + x as usize, first[1] + y as usize, options.width);
                 let samples = options.start + start..options.start + start + count;
                 look(tracer, camera, filter, pixel, samples, &mut wave);
             }
             tracer.trace(s, &mut wave);
-            for (&[x, y], sums) in some.iter().zip(wave.sums.chunks(count as usize)) {
-                let tally = &mut tallies[y as usize * side[0] + x as usize];
+            for (k, sums) in wave.sums.chunks(count as usize).enumerate() {
+                let mut tally = if start == 0 { Tally::default() } else { tallies[k] };
                 for &sum in sums {
                     tally.add_clamped(sum, options.clamp);
+                }
+                if start + count < options.samples {
+                    if start == 0 {
+                        tallies.push(tally);
+                    } else {
+                        tallies[k] = tally;
+                    }
+                    continue;
+                }
+                let (x, y) = (first[0] + some[k][0] as usize, first[1] + some[k][1] as usize);
+                // Sound: tiles do not overlap, nor do the pixels of one.
+                unsafe {
+                    let mut all = sheets.before(x, y);
+                    all.merge(&tally);
+                    sheets.put(x, y, &all);
                 }
             }
         }
@@ -267,14 +294,14 @@ fn look<T: Real>(
     tracer: &Tracer<'_, T>,
     camera: &Camera<T>,
     filter: &Filter,
-    pixel: usize,
+    (pixel, [column, row]): (usize, [usize; 2]),
     samples: Range<u32>,
     wave: &mut Wave<T>,
 ) {
-    let (draws, width) = (&tracer.draws, tracer.options.width);
+    let draws = &tracer.draws;
     let key = draws.key(pixel as u32);
     let half = T::of(0.5);
-    let (column, row) = (T::of((pixel % width) as f64) + half, T::of((pixel / width) as f64) + half);
+    let (column, row) = (T::of(column as f64) + half, T::of(row as f64) + half);
     for sample in samples {
         let sample = sample.wrapping_sub(tracer.options.base);
         let [x, y] = filter.warp(draws.pair::<T>(key, sample, purpose::PIXEL));
@@ -291,7 +318,9 @@ fn order([width, height]: [usize; 2]) -> Vec<[u16; 2]> {
     for y in (0..height).step_by(4) {
         for x in (0..width).step_by(4) {
             for v in y..height.min(y + 4) {
-                order.extend((x..width.min(x + 4)).map(|u| [u as u16, v as u16]));
+                for u in x..width.min(x + 4) {
+                    order.push([u as u16, v as u16]);
+                }
             }
         }
     }

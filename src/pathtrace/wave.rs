@@ -77,23 +77,24 @@ pub struct Wave<T> {
 }
 
 impl<T: Real> Wave<T> {
-    pub fn new() -> Self {
+    /// With room for so many paths.
+    pub fn new(paths: usize) -> Self {
         Wave {
-            rays: Vec::new(),
-            paths: Vec::new(),
-            hits: Vec::new(),
+            rays: Vec::with_capacity(paths),
+            paths: Vec::with_capacity(paths),
+            hits: Vec::with_capacity(paths),
             copies: Vec::new(),
-            next_rays: Vec::new(),
-            next_paths: Vec::new(),
-            shadow_rays: Vec::new(),
-            carried: Vec::new(),
-            blocked: Vec::new(),
-            diffuse: Vec::new(),
+            next_rays: Vec::with_capacity(paths),
+            next_paths: Vec::with_capacity(paths),
+            shadow_rays: Vec::with_capacity(paths),
+            carried: Vec::with_capacity(paths),
+            blocked: Vec::with_capacity(paths),
+            diffuse: Vec::with_capacity(paths),
             other: Vec::new(),
             sky: Vec::new(),
-            keys: Vec::new(),
-            samples: Vec::new(),
-            sums: Vec::new(),
+            keys: Vec::with_capacity(paths),
+            samples: Vec::with_capacity(paths),
+            sums: Vec::with_capacity(paths),
         }
     }
 

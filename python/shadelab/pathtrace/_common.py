@@ -52,15 +52,24 @@ def picture_size(size: Any) -> Size:
 
 def pinhole(camera: Camera, size: Size) -> tuple[tuple[float, ...], ...]:
     """Eye, direction through the picture's top left corner, and its steps a pixel to the right and down."""
-    eye, target, up = (np.asarray(v, np.float64) for v in (camera.eye, camera.target, camera.up))
-    forward = (target - eye) / np.linalg.norm(target - eye)
-    right = np.cross(forward, up)
-    right /= np.linalg.norm(right)
+    # In plain numbers: arrays of three take longer than small pictures have.
+    eye = tuple(map(float, camera.eye))
+    forward = _unit(*(t - e for t, e in zip(map(float, camera.target), eye, strict=True)))
+    right = _unit(*_cross(forward, tuple(map(float, camera.up))))
+    down = _cross(forward, right)
     height = 2 * math.tan(camera.fov_y / 2)
     step = height / size[1]
-    down = -np.cross(right, forward)
-    corner = forward - right * (step * size[0] / 2) - down * (height / 2)
-    return tuple(tuple(float(x) for x in v) for v in (eye, corner, right * step, down * step))
+    corner = (f - r * (step * size[0] / 2) - d * (height / 2) for f, r, d in zip(forward, right, down, strict=True))
+    return eye, tuple(corner), tuple(r * step for r in right), tuple(d * step for d in down)
+
+
+def _unit(*v: float) -> tuple[float, ...]:
+    length = math.hypot(*v)
+    return tuple(x / length for x in v)
+
+
+def _cross(a: tuple[float, ...], b: tuple[float, ...]) -> tuple[float, ...]:
+    return a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]
 
 
 Pose = tuple[tuple[tuple[float, ...], ...], tuple[tuple[float, ...], ...], float]

@@ -36,7 +36,7 @@ def shareable(scene: Scene, sharing: Sharing, samples: int) -> list[int]:
     Of `samples` in all the pictures.
     """
     instances: Sequence[Instance] = getattr(scene, "instances", ())
-    if sharing == "flat" or len(instances) < 2:
+    if sharing == "flat" or len({id(i.mesh) for i in instances}) == len(instances):
         return []
     matrices = np.array([i.transform for i in instances], np.float64).reshape(-1, 4, 4)[:, :3, :3]
     lengths = np.linalg.norm(matrices, axis=-1)
