@@ -106,7 +106,7 @@ impl<T: Real> Site<T> {
         digits: &[[u32; 3]],
         bench: &mut Bench<T>,
     ) -> Tally {
-        let (r, light, mut tally) = (&self.receiver, asked.light(), Tally::default());
+        let (r, light, mut tally) = (&self.receiver, asked.light(), Tally::EMPTY);
         let both = r.lobe_matters(light);
         for batch in digits.chunks(BATCH) {
             bench.rays.clear();

@@ -14,8 +14,9 @@ use crate::sampling::sampler::Sampler;
 
 #[derive(Clone, Copy, Debug)]
 pub struct Draws {
-    pub sampler: Sampler,
-    pub seed: u64,
+    sampler: Sampler,
+    /// Of the seed.
+    base: u32,
 }
 
 /// Flips each binary digit by a hash of the lower ones.
@@ -40,11 +41,15 @@ fn pascal(mut x: u32) -> u32 {
 }
 
 impl Draws {
+    pub fn new(sampler: Sampler, seed: u64) -> Self {
+        Draws { sampler, base: Key::new(seed, 0).bits() as u32 }
+    }
+
     /// What tells a pixel's numbers from others': its own number, or for Sobol' points a hash.
     #[inline(always)]
     pub fn key(&self, pixel: u32) -> u32 {
         match self.sampler {
-            Sampler::Sobol { .. } => mix(mix(pixel) ^ Key::new(self.seed, 0).bits() as u32),
+            Sampler::Sobol { .. } => mix(mix(pixel) ^ self.base),
             _ => pixel,
         }
     }

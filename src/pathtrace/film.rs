@@ -19,7 +19,7 @@ use crate::vec::Vec3;
 const SETTLED: u32 = 16;
 
 /// One pixel's samples.
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Tally {
     pub count: u32,
     /// Samples that outweighed all before them.
@@ -32,6 +32,10 @@ pub struct Tally {
 }
 
 impl Tally {
+    /// Of no samples. (The derived default calls what is not inlined.)
+    pub const EMPTY: Self =
+        Tally { count: 0, outliers: 0, mean: [0.0; 3], squares: [0.0; 3], removed: [0.0; 3] };
+
     /// Adds a sample, scaled down so that its largest channel does not exceed `clamp` (infinity: as it is).
     #[inline(always)]
     pub fn add_clamped<T: Real>(&mut self, x: Vec3<T>, clamp: f64) {
@@ -104,7 +108,7 @@ mod tests {
     #[test]
     fn merging_is_adding_on() {
         let samples: Vec<Vec3<f64>> = (0..50).map(|i| Vec3::new(f64::from(i * i % 17), 1.0, 0.5)).collect();
-        let (mut all, mut head, mut tail) = (Tally::default(), Tally::default(), Tally::default());
+        let (mut all, mut head, mut tail) = (Tally::EMPTY, Tally::EMPTY, Tally::EMPTY);
         samples.iter().for_each(|&x| all.add_clamped(x, 9.0));
         samples[..20].iter().for_each(|&x| head.add_clamped(x, 9.0));
         samples[20..].iter().for_each(|&x| tail.add_clamped(x, 9.0));
@@ -119,7 +123,7 @@ mod tests {
 
     #[test]
     fn what_clamping_takes_is_the_bias() {
-        let (mut free, mut clamped) = (Tally::default(), Tally::default());
+        let (mut free, mut clamped) = (Tally::EMPTY, Tally::EMPTY);
         for i in 0..40 {
             let x = Vec3::splat(if i == 30 { 1000.0 } else { 1.0 });
             free.add(x);

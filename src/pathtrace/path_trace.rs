@@ -156,22 +156,6 @@ impl<T: Real> Sheets<'_, T> {
             if let Some(removed) = &self.removed {
                 removed.row(x, y, 1)[0] = narrow(tally.removed);
             }
-            if let Some(kept) = &self.kept {
-                kept.row(x, y, 1)[0] = *tally;
-            }
-        }
-    }
-
-    /// What earlier passes have gathered.
-    ///
-    /// # Safety
-    /// As of `put`.
-    #[inline(always)]
-    unsafe fn before(&self, x: usize, y: usize) -> Tally {
-        match &self.kept {
-            // Sound: as the caller promises.
-            Some(kept) => unsafe { kept.row(x, y, 1)[0] },
-            None => Tally::default(),
         }
     }
 }
@@ -205,10 +189,10 @@ pub fn path_trace<T: Real>(
     let lighting = Lighting::new(scene, options.selection);
     let diffuse: Vec<bool> =
         scene.kinds.iter().zip(scene.rows).map(|(&kind, row)| is_diffuse(kind, row)).collect();
-    let draws = Draws { sampler: options.sampler, seed: options.seed };
+    let draws = Draws::new(options.sampler, options.seed);
     let count = film.mean.len();
     let passes = options.samples.div_ceil(PASS);
-    let mut kept = vec![Tally::default(); if passes > 1 { count } else { 0 }];
+    let mut kept = vec![Tally::EMPTY; if passes > 1 { count } else { 0 }];
     let Tiles { width, height, .. } = Tiles::new(options.width, count, pixels, 1);
     let sheets = Sheets {
         mean: Picture::new(film.mean, width, height),
@@ -264,7 +248,7 @@ fn tile<T: Real, S: Simd>(
             }
             tracer.trace(s, &mut wave);
             for (k, sums) in wave.sums.chunks(count as usize).enumerate() {
-                let mut tally = if start == 0 { Tally::default() } else { tallies[k] };
+                let mut tally = if start == 0 { Tally::EMPTY } else { tallies[k] };
                 for &sum in sums {
                     tally.add_clamped(sum, options.clamp);
                 }
@@ -279,9 +263,12 @@ fn tile<T: Real, S: Simd>(
                 let (x, y) = (first[0] + some[k][0] as usize, first[1] + some[k][1] as usize);
                 // Sound: tiles do not overlap, nor do the pixels of one.
                 unsafe {
-                    let mut all = sheets.before(x, y);
-                    all.merge(&tally);
-                    sheets.put(x, y, &all);
+                    if let Some(kept) = &sheets.kept {
+                        let all = &mut kept.row(x, y, 1)[0];
+                        all.merge(&tally);
+                        tally = *all;
+                    }
+                    sheets.put(x, y, &tally);
                 }
             }
         }

@@ -202,11 +202,11 @@ fn pixels<T: Real, S: Simd>(
     film: Film<'_, T>,
 ) {
     let half = T::of(0.5);
-    let draws = Draws { sampler: Sampler::Independent { seed: options.seed }, seed: options.seed };
+    let draws = Draws::new(Sampler::Independent { seed: options.seed }, options.seed);
     for k in 0..film.mean.len() {
         let pixel = first + k;
         let (x, y) = (T::of((pixel % options.width) as f64), T::of((pixel / options.width) as f64));
-        let (mut tally, key) = (Tally::default(), draws.key(pixel as u32));
+        let (mut tally, key) = (Tally::EMPTY, draws.key(pixel as u32));
         for index in options.start..options.start + options.samples {
             let sample = Sample { draws, key, index };
             let [a, b, lens @ ..] = sample.quad::<T>(purpose::EYE);
