@@ -89,7 +89,9 @@ def main():
     low, middle = mitsuba
     print(f"{'mitsuba llvm_ad_rgb':26} {low * 1e3:7.1f} ms {middle * 1e3:7.1f} ms  {gigabytes / low:5.1f} GB/s")
     print(f"mitsuba / ours: {low / reused[0]:.2f} (best), {middle / reused[1]:.2f} (median)")
-    print(f"three times as fast as mitsuba: {low / 3e-3:.1f} ms; the same traffic alone takes {traffic[0] * 1e3:.1f} ms")
+    print(
+        f"three times as fast as mitsuba: {low / 3e-3:.1f} ms; the same traffic alone takes {traffic[0] * 1e3:.1f} ms"
+    )
     print(f"relative difference: median {np.median(error):.1e}")
 
 

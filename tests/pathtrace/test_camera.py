@@ -2,6 +2,7 @@
 
 import numpy as np
 import pytest
+import shadelab as sl
 from hypothesis import given, settings
 from hypothesis import strategies as st
 from shadelab.pathtrace import camera_rays
@@ -109,3 +110,15 @@ def test_wrong_cameras_name_the_argument():
         camera(shutter=(0.5, 0.25))
     with pytest.raises(TypeError, match="end: expected a Camera"):
         camera(end=3)
+
+
+def test_wrong_calls_are_named():
+    world = sl.scene.default()
+    with pytest.raises(TypeError, match="camera: expected a Camera, got NoneType"):
+        sl.pathtrace.camera_rays(None, (4, 4), [0.5, 0.5])
+    with pytest.raises(TypeError, match="samples: expected an integer, got NoneType"):
+        sl.pathtrace.whitted(world, (4, 4), None)
+    with pytest.raises(TypeError, match="dtype: expected float32 or float64"):
+        world.camera.rays((4, 4), dtype=np.float16)
+    with pytest.raises(TypeError, match="dtype: expected float32 or float64, got 3"):
+        world.flatten(3)

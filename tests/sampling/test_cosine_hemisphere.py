@@ -41,3 +41,14 @@ def test_the_inverse_returns_to_the_square(method, dtype):
 def test_points_beyond_the_square_are_nan_alone():
     got = sl.sampling.square_to_cosine_hemisphere([[2.0, 0.5], [-1.0, 0.5], [0.5, np.nan], [0.5, 0.25]])
     assert np.isnan(got[:3]).all() and np.isfinite(got[3]).all()
+
+
+def test_mitsuba_maps_alike():
+    mitsuba = pytest.importorskip("mitsuba")
+    mitsuba.set_variant("scalar_rgb")
+    for u in np.random.default_rng(2).random((50, 2)):
+        d = np.array(mitsuba.warp.square_to_cosine_hemisphere(u))
+        assert np.allclose(sl.sampling.square_to_cosine_hemisphere(u, "concentric"), d, atol=1e-6)
+        assert np.isclose(
+            sl.sampling.square_to_cosine_hemisphere_pdf(d), mitsuba.warp.square_to_cosine_hemisphere_pdf(d), rtol=1e-5
+        )

@@ -66,3 +66,14 @@ def test_unknown_methods_are_named():
 def test_points_beyond_the_square_are_nan_alone():
     got = sl.sampling.square_to_disk([[2.0, 0.5], [-1.0, 0.5], [0.5, np.nan], [0.5, 0.25]])
     assert np.isnan(got[:3]).all() and np.isfinite(got[3]).all()
+
+
+def test_mitsuba_maps_alike():
+    mitsuba = pytest.importorskip("mitsuba")
+    mitsuba.set_variant("scalar_rgb")
+    for u, v in np.random.default_rng(2).random((50, 2)):
+        # The radius comes from the first number here, from the second there; single precision.
+        theirs = np.array(mitsuba.warp.square_to_uniform_disk([v, u]))
+        assert np.allclose(sl.sampling.square_to_disk([u, v], "polar"), theirs, atol=1e-6)
+        theirs = np.array(mitsuba.warp.square_to_uniform_disk_concentric([u, v]))
+        assert np.allclose(sl.sampling.square_to_disk([u, v], "concentric"), theirs, atol=1e-6)

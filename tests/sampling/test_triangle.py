@@ -54,3 +54,12 @@ def test_nan_stays_in_its_row():
 def test_points_beyond_the_square_are_nan_alone():
     got = sl.sampling.square_to_triangle([[2.0, 0.5], [-1.0, 0.5], [0.5, np.nan], [0.5, 0.25]])
     assert np.isnan(got[:3]).all() and np.isfinite(got[3]).all()
+
+
+def test_mitsuba_maps_alike():
+    mitsuba = pytest.importorskip("mitsuba")
+    mitsuba.set_variant("scalar_rgb")
+    for u, v in np.random.default_rng(2).random((50, 2)):
+        # The first number runs the other way; single precision.
+        theirs = np.array(mitsuba.warp.square_to_uniform_triangle([1 - u, v]))
+        assert np.allclose(sl.sampling.square_to_triangle([u, v], "root"), theirs, atol=1e-6)
