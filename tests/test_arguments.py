@@ -231,16 +231,35 @@ OTHERS: dict[str, tuple[Callable[..., Any], dict[str, Any]]] = {
         f"brdf.{name}": (getattr(brdf, name), {})
         for name in (
             "Diffuse",
+            "OrenNayar",
+            "Phong",
+            "BlinnPhong",
             "Dielectric",
-            "MetallicRoughness",
-            "Principled",
             "RoughDielectric",
+            "Conductor",
+            "RoughConductor",
+            "Plastic",
+            "MetallicRoughness",
+            "SpecularGlossiness",
+            "Principled",
         )
     },
     "brdf.Model.eval": (brdf.Principled().eval, {"wi": S, "wo": S}),
     "brdf.Model.pdf": (brdf.Principled().pdf, {"wi": S, "wo": S}),
     "brdf.Model.sample": (brdf.Principled().sample, {"wo": S, "u": P % 1}),
     "brdf.ndf": (brdf.ndf, {"normals": S, "alpha": 0.5}),
+    "brdf.masking_shadowing": (brdf.masking_shadowing, {"wi": S, "wo": S, "alpha": 0.5}),
+    "brdf.lambert": (brdf.lambert, {"wi": S, "wo": S, "albedo": Q}),
+    "brdf.half_lambert": (brdf.half_lambert, {"wi": S}),
+    "brdf.kulla_conty": (brdf.kulla_conty, {"wi": S, "wo": S, "alpha": 0.5, "fresnel": 0.5}),
+    "brdf.to_specular_glossiness": (brdf.to_specular_glossiness, {"base_color": Q, "metallic": 0.5}),
+    "brdf.to_metallic_roughness": (brdf.to_metallic_roughness, {"diffuse": Q, "specular": R}),
+    "brdf.fresnel_schlick": (brdf.fresnel_schlick, {"cos_theta": 0.5, "f0": 0.04}),
+    "brdf.refract": (brdf.refract, {"w": S, "normal": S, "eta": 1.5}),
+    "brdf.reflected_radiance": (
+        brdf.reflected_radiance,
+        {"model": brdf.Diffuse(), "wo": S, "radiance": np.ones_like, "samples": 4},
+    ),
     "brdf.fresnel": (brdf.fresnel, {"cos_theta": 0.5, "eta": 1.5}),
     "brdf.fresnel_average": (brdf.fresnel_average, {"eta": 1.5}),
     "brdf.reflect": (brdf.reflect, {"w": S, "normal": S}),
@@ -354,7 +373,7 @@ RELATED = {
     **{(f"accel.{n}", "positions"): "faces" for n in ("brute_force", "brute_force_all")},
 }
 # What these raise is the user's own.
-CALLED = {"progress", "surface"}
+CALLED = {"progress", "surface", "radiance"}
 
 
 def complaint(name: str, argument: str, value: Any) -> str | None:

@@ -136,12 +136,23 @@ def test_parameters_are_checked():
     assert np.isfinite(got[0]).all() and np.isnan(got[1]).all()
 
 
+def test_a_list_of_numbers_is_an_array():
+    got = brdf.RoughConductor([0.1, 0.4]).eval([0, 0, 1], [0, 0, 1])
+    np.testing.assert_array_equal(got, brdf.RoughConductor(np.array([0.1, 0.4])).eval([0, 0, 1], [0, 0, 1]))
+    with pytest.raises(TypeError, match="alpha: expected real numbers"):
+        brdf.RoughConductor(["a", "b"])
+
+
 def test_half_lambert_wraps():
     assert np.array_equal(brdf.half_lambert([[0, 0, 1.0], [0, 0, -1.0]], 0.5), [0.5, 0])
     assert brdf.half_lambert(np.float32([[1, 0, 0]]), exponent=1.0).dtype == np.float32
+    with pytest.raises(ValueError, match="albedo"):
+        brdf.half_lambert(np.ones((3, 3)), np.ones(2))
 
 
 def test_reflected_radiance_of_a_half_lit_sky():
+    with pytest.raises(TypeError, match="radiance: expected a callable, got float"):
+        brdf.reflected_radiance(brdf.Diffuse(), [0.0, 0, 1], 1.0)
     got = brdf.reflected_radiance(brdf.Diffuse((0.2, 0.4, 0.8)), [0.0, 0, 1], lambda w: w[:, 0] > 0, 1 << 14)
     np.testing.assert_allclose(got, [0.1, 0.2, 0.4], rtol=5e-3)
 

@@ -27,11 +27,12 @@ def lanewise(
     in `lows`): a lone number outside is refused, an element of an array outside is left to the
     kernel, which answers NaN there.
     """
-    for name, value in scalars.items():
-        if np.ndim(value) == 0 and not isinstance(value, np.ndarray):
-            _arrays.number(name, value, 0.0, 1.0, above=0.0 if name in lows else None)
     arrays = {n: v for n, (v, _) in vectors.items()} | scalars
-    dtype = _arrays.result_dtype(**{n: v for n, v in arrays.items() if np.ndim(v)})
+    batched = {n: v for n, v in arrays.items() if _arrays.array(n, v).ndim}
+    for name, value in scalars.items():
+        if name not in batched and not isinstance(value, np.ndarray):
+            _arrays.number(name, value, 0.0, 1.0, above=0.0 if name in lows else None)
+    dtype = _arrays.result_dtype(**batched)
     core = {n: (_arrays.vectors(n, v, k, dtype), 1) for n, (v, k) in vectors.items()}
     core |= {n: (_arrays.floats(n, v, dtype), 0) for n, v in scalars.items()}
     shape, flat = _arrays.broadcast(core, lone=True)

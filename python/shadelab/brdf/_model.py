@@ -261,6 +261,8 @@ class Model:
 def _coerced(name: str, value: Any, meta: Any) -> Any:
     """A float or a triple of floats in its domain, or a read-only array of either."""
     core = meta["core"]
+    if isinstance(value, list | tuple) and not core:
+        value = _arrays.floats(name, value)
     if isinstance(value, np.ndarray) and value.ndim > (1 if core else 0):
         array = (_arrays.vectors(name, value, core) if core else _arrays.floats(name, value)).copy()
         array.flags.writeable = False

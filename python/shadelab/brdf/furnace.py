@@ -62,6 +62,8 @@ def reflected_radiance(
     """
     if not isinstance(model, Model):
         raise TypeError(f"model: expected a Model, got {type(model).__name__}")
+    if not callable(radiance):
+        raise TypeError(f"radiance: expected a callable, got {type(radiance).__name__}")
     samples = _arrays.count("samples", samples, 1, 1 << 22)
     wo = _arrays.vectors("wo", wo)
     flat = wo.reshape(-1, 3)

@@ -136,9 +136,12 @@ def half_lambert(wi: ArrayLike, albedo: ArrayLike = 1.0, *, exponent: ArrayLike 
     """
     dtype = _arrays.result_dtype(wi=wi)
     cosine = _arrays.vectors("wi", wi, 3, dtype)[..., 2]
+    numbers = {"cosine of wi": (cosine, 0), "albedo": (_arrays.floats("albedo", albedo, dtype), 0)}
+    _arrays.broadcast(numbers | {"exponent": (_arrays.floats("exponent", exponent, dtype), 0)})
     wrapped = np.clip(cosine * dtype.type(0.5) + dtype.type(0.5), 0, None)
-    power = wrapped ** _arrays.floats("exponent", exponent, dtype)
-    return np.asarray(power * _arrays.floats("albedo", albedo, dtype))
+    with np.errstate(all="ignore"):
+        power = wrapped ** _arrays.floats("exponent", exponent, dtype)
+        return np.asarray(power * _arrays.floats("albedo", albedo, dtype))
 
 
 def reflect(w: ArrayLike, normal: ArrayLike) -> Floats:
