@@ -11,21 +11,18 @@ python tests/benchmarks/path_trace.py [--size 256] [--samples 64] [--converged 1
 `llvm_ad_rgb` needs an LLVM that Dr.Jit can use: name one by DRJIT_LIBLLVM_PATH if the system's aborts.
 """
 
-import argparse
 import importlib.util
 import os
-import resource
-import subprocess
 import sys
-import tempfile
 import time
 from pathlib import Path
 
 import numpy as np
 import shadelab as sl
 from shadelab import mesh, scene
-from shadelab.environment import Environment
 from shadelab.light import RectLight
+
+# What scenes do not need is imported where it is: the first picture is timed with this file in it.
 
 spec = importlib.util.spec_from_file_location(
     "path_trace_scenes", Path(__file__).parents[1] / "pathtrace" / "scenes.py"
@@ -72,6 +69,8 @@ def cornell():
 
 def bunny():
     """A bunny on the ground under a panorama."""
+    from shadelab.environment import Environment
+
     data = Path(os.environ["SHADELAB_DATA"])
     body = scene.load_mesh(data / "bunny.obj")
     low, high = np.asarray(body.bounds, float)
@@ -109,6 +108,8 @@ def error(picture, halves):
 
 def mitsuba(variant, name, size, samples, converged, out):
     """Times a picture; with `converged` samples, two halves of the reference as well."""
+    import tempfile
+
     import mitsuba as mi
 
     mi.set_variant(variant)
@@ -124,6 +125,9 @@ def mitsuba(variant, name, size, samples, converged, out):
 
 
 def of_mitsuba(variant, name, given, converged=0):
+    import subprocess
+    import tempfile
+
     with tempfile.TemporaryDirectory() as folder:
         out = str(Path(folder) / "result.npz")
         numbers = [str(n) for n in (given.size, given.samples, converged)]
@@ -190,6 +194,8 @@ def constancy(given):
 
 def memory():
     """The peak of a process of its own, by samples."""
+    import subprocess
+
     for samples in (1, 64, 4096):
         code = (
             "import runpy, resource, shadelab as sl;"
@@ -215,6 +221,10 @@ FIRST = {
 
 def first_picture(given):
     """From the start of Python to one sample a pixel, in processes of their own that find no compiled kernels."""
+    import resource
+    import subprocess
+    import tempfile
+
     least = {}
 
     def spent():
@@ -236,6 +246,8 @@ def first_picture(given):
 
 
 def main():
+    import argparse
+
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("--size", type=int, default=256)
     parser.add_argument("--samples", type=int, default=64)

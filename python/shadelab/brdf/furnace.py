@@ -7,7 +7,7 @@ from collections.abc import Callable
 import numpy as np
 from numpy.typing import ArrayLike
 
-from .. import _arrays, sampling
+from .. import _arrays
 from .._arrays import Floats
 from ._model import Model
 
@@ -67,6 +67,9 @@ def reflected_radiance(
     samples = _arrays.count("samples", samples, 1, 1 << 22)
     wo = _arrays.vectors("wo", wo)
     flat = wo.reshape(-1, 3)
+    # Here, since scenes of models need no sequences: a tenth of a first picture's imports.
+    from .. import sampling
+
     u = sampling.sobol(samples, 3, seed=seed).astype(flat.dtype)
     # Rounding to single may reach one.
     u = np.minimum(u, np.nextafter(flat.dtype.type(1), flat.dtype.type(0)))
