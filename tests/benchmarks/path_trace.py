@@ -166,29 +166,38 @@ def equal_error(given):
 
 
 def constancy(given):
-    """Processor time a sample, least of three, with one thread: what else runs changes it least."""
+    """Processor time a sample with one thread, beside that of one and the same small picture right before and after.
+
+    So what else the machine does drops out; the median of five rounds. Few samples of many pixels, and many of few.
+    """
     world = cornell()
     sl.set_threads(1)
-    bvh = sl.accel.BVH(*(lambda a: (a.positions, a.faces))(world.flatten(np.float32)))
+
+    def spent(size, count, seed):
+        start = time.process_time()
+        # Small pictures again and again, for a quarter of a million paths.
+        times = max(1, 2**18 // (size**2 * count))
+        for i in range(times):
+            sl.pathtrace.path_trace(world, (size, size), count, DEPTH, seed + i)
+        return (time.process_time() - start) / (times * size**2 * count) * 1e9
+
     sizes = [(size, 4) for size in (128, 256, 512, 1024, 2048)]
-    samples = [(128, 4**k) for k in range(7)]
+    samples = [(min(128, 2 ** (10 - k)), 4**k) for k in range(7)]
     for kind, cases in (("sizes", sizes), ("samples", samples)):
-        least = {}
-        for _ in range(3):
-            for size, count in cases:
-                if (size, count) in least and size**2 * count > 2**22:
-                    # Long enough to be timed once.
-                    continue
-                start = time.process_time()
-                # Small pictures again and again, for half a million paths.
-                times = max(1, 2**19 // (size**2 * count))
-                for i in range(times):
-                    sl.pathtrace.path_trace(world, (size, size), count, DEPTH, i, bvh=bvh)
-                ns = (time.process_time() - start) / (times * size**2 * count) * 1e9
-                least[size, count] = min(ns, least.get((size, count), np.inf))
-        for (size, count), ns in least.items():
-            print(f"{size:5}² {count:5} samples: cpu {ns:6.0f} ns a sample")
-        print(f"over {kind}: largest over least {max(least.values()) / min(least.values()):.3f}")
+        rounds = {case: [] for case in cases}
+        yards = []
+        for seed in range(5):
+            before = spent(128, 16, seed)
+            for case in cases:
+                ns, after = spent(*case, seed), spent(128, 16, seed)
+                rounds[case].append(2 * ns / (before + after))
+                yards.append(after)
+                before = after
+        yard = min(yards)
+        ratios = {case: float(np.median(found)) for case, found in rounds.items()}
+        for (size, count), ratio in ratios.items():
+            print(f"{size:5}² {count:5} samples: cpu {ratio * yard:6.0f} ns a sample", flush=True)
+        print(f"over {kind}: largest over least {max(ratios.values()) / min(ratios.values()):.3f}")
     sl.set_threads(None)
 
 
