@@ -109,16 +109,16 @@ def path_trace(
     TypeError, ValueError
         If an argument is out of its domain.
 
-    Notes ----- Unbiased up to `max_depth`, without `clamp` and `target_error`. Time is the same for every sample,
-    whatever their number, and memory does not grow with it. `variance` is that of independent samples: of scrambled
-    points an upper bound as a rule, so two seeds tell more. Lights of some size are seen from the side that shines,
-    stop there what meets them, other lights' and the sky's light too, and are not there from behind; surfaces have two
-    sides. (`shadelab.render` draws no lights.) The camera's `near` and `far` cut nothing off: paths start at the eye.
-    Light that comes evenly from everywhere (background, `AmbientLight`, an environment of one colour) is left to
-    directions whatever the strategy: asking for it too took a bunny 1.6 to 2.6 times as long to the same error. Of a
-    panorama each surface draws two directions, and looks along the one kept by what it would bring. No firefly is
-    clamped: caustics from narrow mirrors converge slowly, and `variance` shows where, and `outliers` how often one
-    sample outweighed all before it.
+    Notes ----- Unbiased up to `max_depth`, without `clamp` and `target_error`. Samples take the same time within a tenth, from 128²
+    to 2048² pixels and from 16 to 4,096 of each (a lone one of each a sixth more), and memory does not grow with them.
+    `variance` is that of independent samples: of scrambled points an upper bound as a rule, so two seeds tell more.
+    Lights of some size are seen from the side that shines, stop there what meets them, other lights' and the sky's
+    light too, and are not there from behind; surfaces have two sides. (`shadelab.render` draws no lights.) The camera's
+    `near` and `far` cut nothing off: paths start at the eye. Light that comes evenly from everywhere (background,
+    `AmbientLight`, an environment of one colour) is left to directions whatever the strategy: asking for it too took a
+    bunny 1.6 to 2.6 times as long to the same error. Of a panorama each surface draws two directions, and looks along
+    the one kept by what it would bring. No firefly is clamped: caustics from narrow mirrors converge slowly, and
+    `variance` shows where, and `outliers` how often one sample outweighed all before it.
 
     What is made of the scene (arrays, a hierarchy: some 200 bytes a face) is kept for the next picture of it, until
     another scene is traced or this one is gone, here and by `aovs`, `whitted` and `distribution`. Changes to its arrays
