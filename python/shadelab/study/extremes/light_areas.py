@@ -168,3 +168,55 @@ def _ltc(dtype: np.dtype) -> Measurement:
     got = np.stack([light.ltc(lamp, np.zeros(3, dtype), up, wo, alpha) for lamp in lamps])
     wrong = (got < 0) | (got > 1.01)
     return Measurement(int(wrong.sum()), got.size, int((~np.isfinite(got)).sum()))
+
+
+@extreme(
+    "light.irradiance",
+    "one bright texel of a black picture, 1e-3 … 1e6 of its size away",
+    domain="an 8 × 8 picture with one texel of 1e6; against that texel as a light in double; cosines to 1e-3",
+    unit="relative",
+    claim={"float32": 1e-7, "float64": 1e-9},
+)
+def _texel(dtype: np.dtype) -> Measurement:
+    error, cases, strays = 0.0, 0, 0
+    texture = np.zeros((8, 8))
+    texture[2, 5] = 1e6
+    for k in range(-10, 21, 3):
+        height = 2.0**k
+        screen = RectLight((0, height, 0), (2, 0, 0), (0, 0, 2), texture=texture)
+        # Seen from the front, below, with z up: columns go along x, rows against z.
+        own = RectLight((0.375, height, 0.375), (0.25, 0, 0), (0, 0, 0.25), (1e6,) * 3)
+        points = np.array([[0.375, 0, 0.375], [0.5, 0, 0.5], [-0.9, 0, 0.1]])
+        got = light.irradiance(screen, points.astype(dtype), np.array([0, 1, 0], dtype))
+        exact = light.irradiance(own, points, np.array([0.0, 1, 0]))
+        error = max(error, float(np.abs(got / exact - 1).max()))
+        cases, strays = cases + got.size, strays + int((~np.isfinite(got)).sum())
+    return Measurement(error, cases, strays)
+
+
+@extreme(
+    "light.light_sample",
+    "pictures of one bright texel, black ones, of one row",
+    domain="texels of 1e6, 1e-30 and 0; ends of the square; draws off the bright texel that have a density are counted",
+    unit="count",
+    claim=0,
+)
+def _picture_draws(dtype: np.dtype) -> Measurement:
+    ends = np.array([0, 1e-7, 0.5, np.nextafter(dtype.type(1), dtype.type(0))], dtype)
+    u = np.stack(np.meshgrid(ends, ends), -1).reshape(-1, 2)
+    bad = cases = strays = 0
+    for shape in ((8, 8), (1, 64), (64, 1)):
+        for bright in (1e6, 1e-30, 0.0):
+            texture = np.zeros(shape)
+            row, column = shape[0] // 4, shape[1] // 2
+            texture[row, column] = bright
+            screen = RectLight((0, 1, 0), (2, 0, 0), (0, 0, 2), texture=texture)
+            drawn = light.light_sample(screen, np.zeros(3, dtype), u)
+            at = drawn.wi / np.maximum(drawn.wi[:, 1:2], dtype.type(1e-3))
+            x, z = (at[:, 0] + 1) / 2 * shape[1], (1 - at[:, 2]) / 2 * shape[0]
+            inside = (np.abs(x - column - 0.5) <= 0.501) & (np.abs(z - row - 0.5) <= 0.501)
+            # A black picture is drawn evenly. Within 1e-6 of the ends draws round to the border and may have no density.
+            bad += int((~inside & (drawn.pdf > 0)).sum()) if bright else int((drawn.pdf <= 0).sum())
+            bad += int((drawn.pdf[(u == 0.5).all(-1)] <= 0).sum())
+            cases, strays = cases + len(u), strays + int((~np.isfinite(drawn.pdf)).sum())
+    return Measurement(bad, cases, strays)
