@@ -209,6 +209,9 @@ OTHERS: dict[str, tuple[Callable[..., Any], dict[str, Any]]] = {
     "light.ltc": (light.ltc, {"light": PANEL, "points": P, "normals": R, "wo": R, "alpha": 0.3}),
     "light.fit_ltc": (light.fit_ltc, {"size": (2, 2), "steps": 2}),
     "light.polygon_irradiance": (light.polygon_irradiance, {"corners": SQUARE + R, "points": P, "normals": R}),
+    "light.polygon_moments": (light.polygon_moments, {"corners": SQUARE + R, "points": P, "normals": R}),
+    "light.photometric": (light.photometric, {"values": P}),
+    "light.radiometric": (light.radiometric, {"values": P}),
     "light.unshadowed": (
         light.unshadowed,
         {"lights": PANEL, "points": P, "normals": R, "base_color": Q, "wo": R, "samples": 2},
@@ -256,6 +259,12 @@ OTHERS: dict[str, tuple[Callable[..., Any], dict[str, Any]]] = {
     "brdf.to_metallic_roughness": (brdf.to_metallic_roughness, {"diffuse": Q, "specular": R}),
     "brdf.fresnel_schlick": (brdf.fresnel_schlick, {"cos_theta": 0.5, "f0": 0.04}),
     "brdf.refract": (brdf.refract, {"w": S, "normal": S, "eta": 1.5}),
+    "brdf.metallic_roughness": (brdf.metallic_roughness, {"wi": S, "wo": S, "base_color": Q}),
+    "brdf.metallic_roughness_pdf": (brdf.metallic_roughness_pdf, {"wi": S, "wo": S, "base_color": Q}),
+    "brdf.metallic_roughness_sample": (brdf.metallic_roughness_sample, {"wo": S, "u": P % 1, "base_color": Q}),
+    "brdf.ggx": (brdf.ggx, {"wi": S, "wo": S, "alpha": 0.5}),
+    "brdf.ggx_pdf": (brdf.ggx_pdf, {"wi": S, "wo": S, "alpha": 0.5}),
+    "brdf.ggx_sample": (brdf.ggx_sample, {"wo": S, "u": [0.5, 0.25], "alpha": 0.5}),
     "brdf.reflected_radiance": (
         brdf.reflected_radiance,
         {"model": brdf.Diffuse(), "wo": S, "radiance": np.ones_like, "samples": 4},

@@ -172,3 +172,17 @@ def test_glass_of_no_index_passes_its_share(metallic):
     passed = np.where(draws.specular, draws.weight[:, 0], 0)
     right = np.sqrt(0.2) * 0.5 * (1 - metallic)
     assert passed.mean() == pytest.approx(right, rel=0.02)
+
+
+@pytest.mark.parametrize("form", ["2012", "2015"])
+def test_what_it_loses_and_invents_is_what_is_said(form):
+    """As published, it is not conservative: metal loses its further bounces, white paint gives back too much."""
+    for roughness, lost in ((0.25, 0.013), (0.5, 0.12), (0.75, 0.36), (1.0, 0.62)):
+        metal = brdf.Principled((1, 1, 1), metallic=1.0, roughness=roughness, form=form)
+        assert brdf.white_furnace(metal, 16, 1024) == pytest.approx(lost, abs=0.005)
+        paint = brdf.Principled((1, 1, 1), roughness=roughness, form=form)
+        assert (np.abs(brdf.white_furnace(paint, 16, 1024) + 0.065) < 0.025).all()
+    coated = brdf.Principled((1, 1, 1), roughness=1.0, sheen=1.0, clearcoat=1.0, form=form)
+    assert brdf.white_furnace(coated, 16, 1024) == pytest.approx(-0.11, abs=0.005)
+    rough = brdf.Principled((1, 1, 1), roughness=1.0, form=form)
+    assert brdf.directional_albedo(rough, common.at(0.05), 4096) == pytest.approx(1.5, abs=0.02)

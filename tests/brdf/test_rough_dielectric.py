@@ -5,7 +5,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from shadelab import brdf
+from shadelab import brdf, sampling
 
 spec = importlib.util.spec_from_file_location("brdf_common", Path(__file__).with_name("common.py"))
 common = importlib.util.module_from_spec(spec)
@@ -73,3 +73,25 @@ def test_equal_indices_pass_light_straight():
     wo = common.both_sides(50, 1)
     draws = brdf.RoughDielectric(0.5, 1.0).sample(wo, np.full(3, 0.5))
     assert np.array_equal(draws.wi, -wo) and draws.specular.all() and (draws.weight == 1).all()
+
+
+@pytest.mark.parametrize(
+    ("roughness", "outside", "within"), [(0.25, 0.005, 0.015), (0.5, 0.03, 0.14), (0.75, 0.11, 0.36), (1.0, 0.25, 0.56)]
+)
+@pytest.mark.parametrize("make", ["RoughDielectric", "Principled"])
+def test_what_facets_send_on_to_each_other_is_lost(make, roughness, outside, within):
+    """As much as the docstring says, of both models of rough glass."""
+    model = (
+        brdf.RoughDielectric(roughness**2, 1.5)
+        if make == "RoughDielectric"
+        else brdf.Principled((1, 1, 1), roughness=roughness, spec_trans=1.0, form="2015")
+    )
+    x, weight = np.polynomial.legendre.leggauss(16)
+    cosine = (x + 1) / 2
+    u = sampling.sobol(1024, 3, seed=1)
+    for side, expected in ((1, outside), (-1, within)):
+        wo = np.stack([np.sqrt(1 - cosine**2), 0 * cosine, side * cosine], -1)
+        draws = model.sample(wo[:, None], u)
+        # Power rather than radiance.
+        back = np.where(draws.weight[..., 0] == 0, 0, draws.weight[..., 0] * draws.eta**2).mean(1)
+        assert 1 - (back * weight * cosine).sum() == pytest.approx(expected, abs=0.005)

@@ -81,6 +81,10 @@ class RoughDielectric(_Rough):
     straight, specular. Beckmann facets narrower than 0.01 lose light in float32 at cosines below 1e-3, as those of
     `RoughConductor` do.
 
+    What facets send on to each other is lost, and nothing gives it back. Of the power that comes from everywhere on one
+    side, at η = 1.5 and √alpha 0.25, 0.5, 0.75 and 1: 0.5, 3, 11 and 25 % from outside, 1.5, 14, 36 and 56 % from
+    within, where much is reflected totally and more often than once. Below √alpha = 0.25 it is less than 2 %.
+
     References
     ----------
     B. Walter, S. R. Marschner, H. Li, K. E. Torrance, *Microfacet models for refraction through rough surfaces*, 2007.

@@ -214,7 +214,8 @@ def photometric(values: ArrayLike, *, efficacy: float = 683.0) -> Floats:
     683.0
     """
     k = _arrays.number("efficacy", efficacy, above=0)
-    result: Floats = np.asarray(luminance(_arrays.vectors("values", values))) * k
+    with np.errstate(over="ignore", invalid="ignore"):
+        result: Floats = np.asarray(luminance(_arrays.vectors("values", values))) * k
     return result
 
 
@@ -250,5 +251,11 @@ def radiometric(values: ArrayLike, color: ArrayLike = (1.0, 1.0, 1.0), *, effica
     bright = np.asarray(luminance(tint))
     if not (bright > 0).all():
         raise ValueError("color: expected a colour that is not black")
-    result: Floats = (_arrays.floats("values", values, dtype) / (k * bright))[..., None] * tint
+    given = _arrays.floats("values", values, dtype)
+    try:
+        np.broadcast_shapes(given.shape, bright.shape)
+    except ValueError:
+        raise ValueError(f"color: shape {tint.shape} does not broadcast with values {given.shape}") from None
+    with np.errstate(over="ignore", invalid="ignore"):
+        result: Floats = (given / (k * bright))[..., None] * tint
     return result
