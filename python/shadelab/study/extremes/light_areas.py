@@ -215,7 +215,7 @@ def _picture_draws(dtype: np.dtype) -> Measurement:
             at = drawn.wi / np.maximum(drawn.wi[:, 1:2], dtype.type(1e-3))
             x, z = (at[:, 0] + 1) / 2 * shape[1], (1 - at[:, 2]) / 2 * shape[0]
             inside = (np.abs(x - column - 0.5) <= 0.501) & (np.abs(z - row - 0.5) <= 0.501)
-            # A black picture is drawn evenly. Within 1e-6 of the ends draws round to the border and may have no density.
+            # A black picture is drawn evenly. Within 1e-6 of the ends draws may round to the border: no density.
             bad += int((~inside & (drawn.pdf > 0)).sum()) if bright else int((drawn.pdf <= 0).sum())
             bad += int((drawn.pdf[(u == 0.5).all(-1)] <= 0).sum())
             cases, strays = cases + len(u), strays + int((~np.isfinite(drawn.pdf)).sum())
