@@ -51,6 +51,8 @@ struct Asked<'a, T> {
     number: usize,
     /// Whether any stands.
     hide: bool,
+    /// How far above surfaces rays start.
+    offset: T,
 }
 
 impl<T: Real> Asked<'_, T> {
@@ -61,7 +63,7 @@ impl<T: Real> Asked<'_, T> {
     /// Whether another light stops the ray.
     #[inline(always)]
     fn hidden(&self, ray: &Ray<T>) -> bool {
-        self.hide && hidden(self.lights, ray, self.number)
+        self.hide && hidden(self.lights, ray, self.number, self.offset)
     }
 }
 
@@ -203,7 +205,7 @@ fn body<T: Real, S: Simd>(
             let normal = footing.normals.map_or(receiver.frame.z, |n| n[i].into());
             let site = Site { receiver, normal, offset: footing.offset };
             for (l, light) in lights.iter().enumerate() {
-                let asked = Asked { lights, number: l, hide };
+                let asked = Asked { lights, number: l, hide, offset: footing.offset };
                 if light.has_area() {
                     let stream = (l as u64) << 40 | i as u64;
                     let scramble = std::array::from_fn(|d| Scramble::new(seed, stream, d as u32));

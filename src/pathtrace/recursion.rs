@@ -5,7 +5,7 @@ use super::camera::Camera;
 use super::draws::Draws;
 use super::film::Tally;
 use super::filter::Filter;
-use super::lighting::{Lighting, weight};
+use super::lighting::{Lighting, nearer, weight};
 use super::surface::Spot;
 use super::{Surfaces, leave};
 use crate::accel::{Hit, Ray};
@@ -109,7 +109,7 @@ impl<T: Real> Stage<'_, T> {
         for light in self.scene.lights {
             if let Some(sighting) = light.meet(origin, direction) {
                 let brought = light.shown(origin, &sighting) * weight(own, sighting.pdf);
-                if sighting.distance < nearest.0 {
+                if nearer(sighting.distance, nearest.0, nearest.1.is_some()) {
                     nearest = (sighting.distance, Some(brought));
                 } else if sighting.distance == T::INFINITY {
                     ambient = ambient + brought;
@@ -154,7 +154,7 @@ impl<T: Real> Stage<'_, T> {
             return none;
         }
         let ray = leave(site.point, site.normal, light.wi, self.scene.offset, light.distance);
-        let hidden = self.lighting.hides(self.scene.lights, &ray, source);
+        let hidden = self.lighting.hides(self.scene.lights, &ray, source, self.scene.offset);
         if hidden || self.any_hit(s, &ray) { none } else { value }
     }
 }

@@ -386,7 +386,9 @@ impl<T: Real> Tracer<'_, T> {
         }
         for (i, &(value, slot, source)) in wave.carried.iter().enumerate() {
             let ray = &wave.shadow_rays[i];
-            if !wave.blocked[i] && !self.lighting.hides(self.scene.lights, ray, source as usize) {
+            if !wave.blocked[i]
+                && !self.lighting.hides(self.scene.lights, ray, source as usize, self.scene.offset)
+            {
                 let sum = &mut wave.sums[slot as usize];
                 *sum = *sum + value;
             }

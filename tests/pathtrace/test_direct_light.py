@@ -3,7 +3,8 @@
 import numpy as np
 import pytest
 import shadelab as sl
-from shadelab.light import DirectionalLight, PointLight, RectLight
+from shadelab import scene
+from shadelab.light import DirectionalLight, PointLight, RectLight, SphereLight
 
 UP = np.array([0.0, 1, 0])
 NOWHERE = sl.accel.BVH([[0.0, 90, 0], [1e-3, 90, 0], [0, 90, 1e-3]], [[0, 1, 2]])
@@ -195,3 +196,43 @@ def test_a_light_stops_the_light_of_others_as_its_own_shape_would(roughness):
         assert (np.abs(together.radiance - wanted) < 5 * spread + 1e-9).all()
         spread = np.sqrt(behind.variance + free.variance)
         assert (np.abs(behind.radiance - free.radiance) < 5 * spread + 1e-9).all()
+
+
+@pytest.mark.parametrize("dtype", [np.float32, np.float64])
+@pytest.mark.parametrize(
+    "light",
+    [RectLight((0, 3, 0), (1, 0, 0), (0, 0, 1), (9, 9, 9)), SphereLight((0, 3, 0), 0.5, (9, 9, 9))],
+    ids=["rectangle", "sphere"],
+)
+def test_lights_in_one_place_do_not_put_each_other_out(light, dtype):
+    """The first is seen; a smaller one behind it in the list gives nothing more."""
+    points = np.array([[0.3, 0, 0.1], [2, 0, 1]], dtype)
+
+    def lit(*lights):
+        got = sl.pathtrace.direct_light(NOWHERE, lights, points, UP, [0.6] * 3, 0, 1, eye=(0, 1, 2), samples=512)
+        return got.radiance[:, 0]
+
+    # Each has samples of its own.
+    np.testing.assert_allclose(lit(light, light), lit(light), rtol=0.01)
+    floor = scene.Instance(sl.mesh.plane((6, 6)), None, scene.Material((0.6,) * 3, roughness=1, specular=0.0))
+    for strategy in ("mis", "light", "bsdf"):
+        one, two = (
+            sl.pathtrace.path_trace(
+                scene.Scene(floor, lights, scene.Camera((0, 1, 4), (0, 0, 0), fov_y=0.6)),
+                (8, 8), 256, 1, strategy=strategy, dtype=dtype,
+            )
+            for lights in ((light,), (light, light))
+        )
+        spread = np.sqrt(one.variance.sum() + two.variance.sum())
+        assert abs(one.radiance.sum() - two.radiance.sum()) < 5 * spread + 0.01 * one.radiance.sum()
+
+
+def test_a_point_in_the_plane_of_an_area_light_shines_on():
+    area = RectLight((0, 3, 0), (1, 0, 0), (0, 0, 1), (9, 9, 9))
+    point = PointLight((0, 3, 0), (9, 9, 9))
+    at = [[0.3, 0, 0.1]]
+
+    def lit(*lights):
+        return sl.pathtrace.direct_light(NOWHERE, lights, at, UP, [0.6] * 3, 0, 1, wo=UP, samples=256).radiance
+
+    np.testing.assert_allclose(lit(area, point), lit(area) + lit(point), rtol=0.01)

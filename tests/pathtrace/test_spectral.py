@@ -230,3 +230,25 @@ def test_what_cannot_be_is_named(given, message):
         got = spectral(lambda _: world, (2, 2), 1, wavelengths=3)
         with pytest.raises(ValueError, match="white: expected"):
             got.rgb(white=[1.0, 2.0])
+
+
+@pytest.mark.parametrize(
+    "model",
+    [
+        lambda x: brdf.SpecularGlossiness((0.5,) * 3, (0.9 * x,) * 3, 0.4),
+        lambda x: brdf.Principled((x,) * 3, specular_tint=1, specular=1, roughness=0.2),
+    ],
+    ids=["specular-glossiness", "principled"],
+)
+def test_models_that_mix_their_channels_are_traced_by_themselves(model):
+    """What a wavelength gives does not depend on which others are asked for."""
+
+    def ball(w):
+        thing = scene.Instance(mesh.icosphere(2), materials=model((w - 400) / 300))
+        return scene.Scene(thing, (), scene.Camera((0, 0, 4), (0, 0, 0)), background=(1, 1, 1))
+
+    several = spectral(ball, (4, 4), 64, wavelengths=[450.0, 550.0, 650.0])
+    for k, w in enumerate((450.0, 550.0, 650.0)):
+        alone = path_trace(ball(w), (4, 4), 256)
+        spread = np.sqrt(several.variance[..., k].sum() + alone.variance[..., 0].sum())
+        assert abs(several.radiance[..., k].sum() - alone.radiance[..., 0].sum()) < 4 * spread

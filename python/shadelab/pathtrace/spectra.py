@@ -323,6 +323,9 @@ def _as_one(things: Sequence[Any]) -> Any:
     one: Any = things[0]
     if any(type(t) is not type(one) for t in things) or not is_dataclass(one):
         return None
+    if isinstance(one, brdf.Principled | brdf.SpecularGlossiness):
+        # Of their channels they take luminances and maxima: one does not stand for itself.
+        return None
     if getattr(one, "texture", None) is not None:
         # Of its colours the first channel counts, which a merged scene would not show.
         return None
