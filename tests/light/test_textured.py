@@ -233,3 +233,31 @@ def test_without_samples_the_diffuse_part_is_left():
     expected, found = (sl.light.unshadowed(light, *given, wo=[0.0, 1, 0], samples=0) for light in (plain, shown))
     assert expected.min() > 0.1
     assert np.abs(found / expected - 1).max() < 1e-5
+
+
+def covered(n, within, sub=4):
+    """How much of each of n × n texels lies within a shape of the square [−1, 1]², row 0 at the top."""
+    e = (np.arange(n * sub) + 0.5) / (n * sub) * 2 - 1
+    inside = within(e[None, :], -e[:, None]).astype(float)
+    return inside.reshape(n, sub, n, sub).mean((1, 3))
+
+
+@pytest.mark.parametrize("shape", ["disk", "triangle"])
+def test_a_picture_may_be_of_any_shape(shape):
+    """Disks and polygons as rectangles that are black around them."""
+    if shape == "disk":
+        plain = sl.light.DiskLight((0, 1.2, 0), (0, -1, 0), 0.8, (3, 3, 3))
+        texture = covered(128, lambda x, y: x * x + y * y < 1)
+    else:
+        # edge_u is x, edge_v is z, which points up on the picture.
+        plain = sl.light.PolygonLight([(-0.8, 1.2, -0.8), (0.8, 1.2, -0.8), (-0.8, 1.2, 0.8)], (3, 3, 3))
+        texture = covered(128, lambda x, y: (x + y < 1e-9) / 2 + (x + y < -1e-9) / 2)
+    light = RectLight((0, 1.2, 0), (1.6, 0, 0), (0, 0, 1.6), (3, 3, 3), texture=texture)
+    assert np.dot(plain.normal, light.normal) == pytest.approx(1)
+    points, normals, wo = receivers(300, 7)
+    exact = sl.light.irradiance(plain, points, normals)
+    apart = sl.light.irradiance(light, points, normals) - exact
+    assert np.abs(apart).max() < 2e-4 * exact.mean() and np.sqrt(np.mean(apart**2)) < 5e-5 * exact.mean()
+    for roughness, most in ((0.1, 0.04), (0.25, 0.04), (0.5, 0.03), (1.0, 0.02)):
+        shown, even = (sl.light.ltc(x, points, normals, wo, roughness**2) for x in (light, plain))
+        assert np.sqrt(np.mean((shown - even) ** 2)) < most * even.mean()

@@ -219,7 +219,11 @@ def test_lights_in_one_place_do_not_put_each_other_out(light, dtype):
         one, two = (
             sl.pathtrace.path_trace(
                 scene.Scene(floor, lights, scene.Camera((0, 1, 4), (0, 0, 0), fov_y=0.6)),
-                (8, 8), 256, 1, strategy=strategy, dtype=dtype,
+                (8, 8),
+                256,
+                1,
+                strategy=strategy,
+                dtype=dtype,
             )
             for lights in ((light,), (light, light))
         )

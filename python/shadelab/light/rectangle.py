@@ -55,6 +55,12 @@ class RectLight:
     and for diffusers 0.001 (0.01 before texels of pure noise); 0.003 at roughness 0.25 (0.04), 0.005 at 0.05 (0.1).
     Lit fractions are those of an even light, so that shadows of a picture have no colours.
 
+    A disk or polygon that shows a picture is a rectangle whose texture is black around it, texels at the border weighed
+    by how much of them lies within. At 128 texels across, over the same receivers, a disk's irradiance is within 2e-4
+    of the mean, and its reflection by transformed cosines is off by 0.014 to 0.027 of the mean (root mean square) for
+    roughness 0.1 to 1, where a `DiskLight` is off by 0.006 to 0.014. The black part stops light that meets it, as the
+    rest does.
+
     References
     ----------
     E. Heitz, J. Dupuy, S. Hill, D. Neubelt, *Real-time polygonal-light shading with linearly transformed cosines*,
