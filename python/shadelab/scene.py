@@ -137,16 +137,18 @@ class Instance:
         for material in materials:
             if isinstance(material, brdf.Model):
                 material._row()
-        ids = self.mesh.material_ids
-        if ids is not None and ids.size and int(ids.max()) >= len(materials):
-            face = int(np.argmax(ids >= len(materials)))
-            raise ValueError(
-                f"materials: face {face} of the mesh asks for material {int(ids[face])} of {len(materials)}"
-            )
-        object.__setattr__(self, "transform", _affine("transform", self.transform))
         object.__setattr__(self, "materials", materials)
+        self._check_ids()
+        object.__setattr__(self, "transform", _affine("transform", self.transform))
         if self.transform_end is not None:
             object.__setattr__(self, "transform_end", _affine("transform_end", self.transform_end))
+
+    def _check_ids(self) -> None:
+        """Also before the mesh is used: its ids may have been written to."""
+        ids, count = self.mesh.material_ids, len(self.materials)
+        if ids is not None and ids.size and (int(ids.max()) >= count or int(ids.min()) < 0):
+            face = int(np.argmax((ids >= count) | (ids < 0)))
+            raise ValueError(f"materials: face {face} of the mesh asks for material {int(ids[face])} of {count}")
 
     def world(self, time: float = 0.0) -> Mesh:
         """The mesh in world space, at a time in [0, 1]."""
@@ -306,6 +308,8 @@ class Scene:
         for instance, world in zip(self.instances, worlds, strict=True):
             rows = np.array([table.setdefault(m, len(table)) for m in instance.materials], np.int32)
             own = world.material_ids
+            # Ids may have been written to since the instance was made.
+            instance._check_ids()
             ids.append(rows[own] if own is not None else np.full(len(world.faces), rows[0], np.int32))
             shading = world.normals
             if shading is None:

@@ -306,7 +306,7 @@ fn before<T: Real>(
     if !end.is_finite() {
         return distance < end;
     }
-    slack = slack + T::of(ROUNDING) * T::EPSILON * end;
+    slack += T::of(ROUNDING) * T::EPSILON * end;
     let later = k < source && asked.is_none_or(Light::stands);
     distance < if later { end + slack } else { end - slack }
 }

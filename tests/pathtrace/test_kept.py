@@ -4,6 +4,7 @@ import gc
 import weakref
 
 import numpy as np
+import pytest
 import shadelab as sl
 from shadelab import mesh, scene
 from shadelab.pathtrace import _world
@@ -55,3 +56,17 @@ def test_what_is_kept_goes_with_its_scene():
     del world
     gc.collect()
     assert made() is None and _world._kept is None
+
+
+def test_material_ids_written_to_are_checked():
+    b = mesh.icosphere(1)
+    own = mesh.Mesh(b.positions, b.faces, material_ids=np.zeros(len(b.faces), np.int32))
+    things = [scene.Instance(own, sl.transform.translate([x, 0, 0])) for x in (-1, 1)]
+    world = scene.Scene(things, (), CAMERA, background=(1, 1, 1))
+    for instances in ("shared", "flat"):
+        own.material_ids[:] = 0
+        look(world, instances=instances)
+        for wrong in (7, -1):
+            own.material_ids[3] = wrong
+            with pytest.raises(ValueError, match=f"materials: face 3 of the mesh asks for material {wrong} of 1"):
+                look(world, instances=instances)

@@ -69,6 +69,8 @@ class Copies:
         self.dtype = dtype
         self.numbers = np.array(numbers, np.int32)
         self._instances = [scene.instances[k] for k in numbers]
+        for instance in self._instances:
+            instance._check_ids()
         distinct = {id(i.mesh): i.mesh for i in self._instances}
         self._order = {key: k for k, key in enumerate(distinct)}
         self._meshes = [_single(m, dtype) for m in distinct.values()]
@@ -88,9 +90,11 @@ class Copies:
 
     def join(self, arrays: SceneArrays) -> tuple[SceneArrays, Given]:
         """The arrays of the rest, those of the meshes behind them in their own space; copies as kernels take them."""
-        if self._joined is None or self._joined[0] is not arrays:
-            self._joined = arrays, self._join(arrays)
-        return self._joined[1]
+        joined = self._joined
+        if joined is None or joined[0] is not arrays:
+            # One store, since other threads may trace the same scene at other moments.
+            joined = self._joined = arrays, self._join(arrays)
+        return joined[1]
 
     def _join(self, arrays: SceneArrays) -> tuple[SceneArrays, Given]:
         from ..scene import _tables

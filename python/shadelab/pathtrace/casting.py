@@ -76,6 +76,8 @@ def ray_cast(
     (9, 16, 3)
     """
     if not isinstance(scene, BVH | InstancedBVH):
+        if not callable(getattr(scene, "flatten", None)) or isinstance(scene, np.ndarray):
+            raise TypeError(f"scene: expected a Scene, BVH or InstancedBVH, got {type(scene).__name__}")
         if camera is not None:
             check_camera(camera)
             scene = replace(scene, camera=camera)
