@@ -186,10 +186,3 @@ def test_what_it_loses_and_invents_is_what_is_said(form):
     assert brdf.white_furnace(coated, 16, 1024) == pytest.approx(-0.11, abs=0.005)
     rough = brdf.Principled((1, 1, 1), roughness=1.0, form=form)
     assert brdf.directional_albedo(rough, common.at(0.05), 4096) == pytest.approx(1.5, abs=0.02)
-
-
-@pytest.mark.parametrize(("roughness", "loss"), [(0.25, 1.3), (0.5, 12.1), (0.75, 35.7), (1.0, 62.3)])
-def test_white_metal_loses_what_is_stated(roughness, loss):
-    metal = brdf.Principled((1.0, 1.0, 1.0), metallic=1.0, roughness=roughness)
-    # Draws scatter by a tenth of a per cent.
-    assert 100 * brdf.white_furnace(metal, 32, 2048)[0] == pytest.approx(loss, abs=0.3)

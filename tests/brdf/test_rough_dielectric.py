@@ -95,17 +95,3 @@ def test_what_facets_send_on_to_each_other_is_lost(make, roughness, outside, wit
         # Power rather than radiance.
         back = np.where(draws.weight[..., 0] == 0, 0, draws.weight[..., 0] * draws.eta**2).mean(1)
         assert 1 - (back * weight * cosine).sum() == pytest.approx(expected, abs=0.005)
-
-
-@pytest.mark.parametrize(("alpha", "loss"), [(0.0625, 0.4), (0.25, 3.4), (0.5625, 11.2), (1.0, 25.5)])
-def test_single_bounces_lose_what_is_stated(alpha, loss):
-    """Power in per cent, from outside, averaged by the cosine."""
-    x, weight = np.polynomial.legendre.leggauss(16)
-    cosine = (x + 1) / 2
-    wo = np.repeat(np.stack([common.at(c) for c in cosine]), 8192, 0)
-    drawn = brdf.RoughDielectric(alpha, 1.5).sample(wo, np.random.default_rng(1).random((len(wo), 3)))
-    # Radiance that crosses is divided by the square of the index; power is not.
-    power = drawn.weight[:, 0] * drawn.eta**2
-    back = (power.reshape(16, -1).mean(1) * weight * cosine).sum()
-    # Draws scatter by a tenth.
-    assert 100 * (1 - back) == pytest.approx(loss, abs=0.35)

@@ -79,8 +79,7 @@ class RoughDielectric(_Rough):
     ``eval(wi, wo) * η(wi)² == eval(wo, wi) * η(wo)²``, with the index on each direction's side. Near η = 1 the lobe of
     what is refracted is |η − 1| alpha wide, which directions in float32 do not resolve below 1e-5; η = 1 passes light
     straight, specular. Beckmann facets narrower than 0.01 lose light in float32 at cosines below 1e-3, as those of
-    `RoughConductor` do. What facets throw at each other is lost and not given back: of the power that comes from
-    outside, averaged by the cosine, 0.4, 3.4, 11 and 25 % at alpha = 0.0625, 0.25, 0.5625 and 1 for η = 1.5.
+    `RoughConductor` do.
 
     What facets send on to each other is lost, and nothing gives it back. Of the power that comes from everywhere on one
     side, at η = 1.5 and √alpha 0.25, 0.5, 0.75 and 1: 0.5, 3, 11 and 25 % from outside, 1.5, 14, 36 and 56 % from
