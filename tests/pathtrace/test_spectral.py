@@ -252,3 +252,21 @@ def test_models_that_mix_their_channels_are_traced_by_themselves(model):
         alone = path_trace(ball(w), (4, 4), 256)
         spread = np.sqrt(several.variance[..., k].sum() + alone.variance[..., 0].sum())
         assert abs(several.radiance[..., k].sum() - alone.radiance[..., 0].sum()) < 4 * spread
+
+
+def test_a_hierarchy_serves_all_wavelengths(monkeypatch):
+    built = []
+
+    def counted(*given):
+        built.append(1)
+        return sl.accel.BVH(*given)
+
+    monkeypatch.setattr(sl.pathtrace.spectra, "BVH", counted)
+    glass = mesh.icosphere(1)
+
+    def ball(w):
+        thing = scene.Instance(glass, materials=brdf.Dielectric(1.4 + 0.1 * (w - 400) / 300))
+        return scene.Scene(thing, (), scene.Camera((0, 0, 4), (0, 0, 0)), background=(1, 1, 1))
+
+    spectral(ball, (4, 4), 4, wavelengths=6)
+    assert len(built) == 1

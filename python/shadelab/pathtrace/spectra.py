@@ -11,8 +11,8 @@ from numpy.typing import ArrayLike, NDArray
 
 from .. import _arrays, brdf
 from .._arrays import Floats
+from ..accel import BVH
 from ._common import Size
-from ._world import World
 from .estimate import Traced
 from .paths import path_trace
 
@@ -257,12 +257,11 @@ class _Worlds:
         # What stands in several places may be traced as copies, which have hierarchies of their own.
         if not self.flat and len({id(i.mesh) for i in scene.instances}) < len(scene.instances):
             return None
-        made = World(scene, None, self.dtype, "flat", 1)
-        if self.last is None or not all(
-            np.array_equal(a, b)
-            for a, b in ((made.arrays.positions, self.last.positions), (made.arrays.faces, self.last.faces))
+        arrays, last = scene.flatten(self.dtype), self.last
+        if last is None or not (
+            np.array_equal(arrays.positions, last.positions) and np.array_equal(arrays.faces, last.faces)
         ):
-            self.last = made.bvh
+            self.last = BVH(arrays.positions, arrays.faces)
         return self.last
 
 
