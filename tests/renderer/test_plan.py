@@ -156,6 +156,20 @@ class Study:
         return self.choice
 
 
+class Measured(Study):
+    """What measured more than pictures are rendered by."""
+
+    def pick(self, techniques=None, **bounds):
+        self.asked = bounds
+        others = SimpleNamespace(technique="distance_field", knobs={"field_resolution": 32}, error=0.01, ms=1.0)
+        return others if techniques is None else self.choice
+
+
+def test_what_is_no_technique_of_pictures_is_passed_over():
+    plan = sl.plan(Scene([GROUND, BOX], AREA, CAMERA), evidence=Measured("ray_traced", samples=4), max_error=0.02)
+    assert plan.find("shadow").settings == {"technique": "ray_traced", "samples": 4}
+
+
 def test_evidence_chooses_technique_and_knobs():
     scene = Scene([GROUND, BOX], AREA, CAMERA)
     study = Study("pcf", resolution=512, samples=64, radius=8.0)

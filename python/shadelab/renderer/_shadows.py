@@ -32,6 +32,9 @@ def picked(evidence: Any, max_error: float | None, budget_ms: float | None) -> t
     if not callable(getattr(evidence, "pick", None)):
         raise TypeError(f"evidence: expected the result of a study, got {type(evidence).__name__}")
     choice = evidence.pick(**asked)
+    if choice is not None and choice.technique not in _TECHNIQUES:
+        # The question measures more than pictures are rendered by.
+        choice = evidence.pick(**asked, techniques=_TECHNIQUES)
     if choice is None:
         raise ValueError(f"evidence: nothing that was measured keeps {asked}")
     if choice.technique not in _TECHNIQUES:

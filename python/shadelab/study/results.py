@@ -5,7 +5,7 @@ from __future__ import annotations
 import csv
 import json
 import math
-from collections.abc import Callable, Iterable, Mapping
+from collections.abc import Callable, Collection, Iterable, Mapping
 from dataclasses import dataclass, field, replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, NamedTuple
@@ -125,6 +125,7 @@ class Study:
         *,
         scene: str | None = None,
         view: str | None = None,
+        techniques: Collection[str] | None = None,
     ) -> Choice:
         """The cheapest setting that keeps an error bound, or the most accurate within a budget.
 
@@ -139,6 +140,8 @@ class Study:
             Milliseconds a frame, preparation included.
         scene, view : str, optional
             Look at one scene or view alone.
+        techniques : collection of str, optional
+            Choose among these alone; names that were not measured are passed over.
 
         Returns
         -------
@@ -164,7 +167,11 @@ class Study:
         if budget_ms is not None and not timed:
             raise ValueError(f"budget_ms: expected a study of times, this one's costs are {self.cost_unit().long}")
         part = self.of(scene, view) if scene is not None or view is not None else self
+        if techniques is not None and (isinstance(techniques, str) or not all(isinstance(t, str) for t in techniques)):
+            raise TypeError(f"techniques: expected a collection of names, got {techniques!r}")
         able = [s for s in part.summaries() if s.complete and s.error.known and s.ms.known]
+        if techniques is not None:
+            able = [s for s in able if s.technique in techniques]
         wanted = []
         if max_error is not None:
             wanted.append(f"error at most {max_error:g}")

@@ -21,9 +21,16 @@ _LOCK = threading.Lock()
 
 
 def _grid(inputs: Any, field_resolution: int) -> Any:
-    """The distance field of what casts shadows but for what lies flat under all: built once a scene, as trees are."""
+    """The distance field of what casts shadows but for large faces flat under all: built once a scene, as trees are.
+
+    None if nothing else is there.
+    """
     low, high = inputs.caster_positions.min(0), inputs.caster_positions.max(0)
-    solid = np.ptp(inputs.caster_positions[inputs.caster_faces], axis=1).max(-1) < 0.4 * (high - low).max()
+    corners, side = inputs.caster_positions[inputs.caster_faces], (high - low).max()
+    large = np.ptp(corners, axis=1).max(-1) >= 0.4 * side
+    solid = ~(large & (corners[..., 1].max(-1) <= low[1] + 1e-3 * side))
+    if not solid.any():
+        return None
     with _LOCK:
         kept = _FIELDS.setdefault(inputs, {})
         if field_resolution not in kept:
@@ -39,9 +46,12 @@ def _grid(inputs: Any, field_resolution: int) -> Any:
 def field_lit(inputs: Any, prepared: None, field_resolution: int) -> Array:
     """The lit fraction of each light by cones through the field."""
     grid = _grid(inputs, field_resolution)
+    if grid is None:
+        return np.ones((len(inputs.lights), *inputs.points.shape[:-1]), inputs.points.dtype)
     return np.stack([shadow.distance_field(grid, inputs.points, inputs.geometric, l) for l in inputs.lights])
 
 
 def field_counters(inputs: Any, field_resolution: int) -> dict[str, float]:
     """The bytes of a field."""
-    return {"bytes": _grid(inputs, field_resolution).nbytes}
+    grid = _grid(inputs, field_resolution)
+    return {"bytes": 0 if grid is None else grid.nbytes}
