@@ -4,11 +4,15 @@
 
 Both look up the same receivers in the same map with the same points, turned by a hash of the pixel; ours also follows
 the receiver's plane. Receivers and map are resident in both; the lit fractions arrive in an array. Rounds alternate.
+
+`--only lookups`, `tables` or `moments` for a part: the second is `summed_area_table` of 2048² beside `cv2.integral`,
+both in double; the third, moments of a map of 2048² beside `pcss`, prefilter and lookup, on the scene of large
+penumbrae: error in penumbrae (by 256 rays) and time.
 """
 
+import argparse
 import os
 import statistics
-import sys
 from time import perf_counter, process_time
 
 import numpy as np
@@ -102,8 +106,18 @@ def llvmpipe(m, points):
     return run
 
 
-def main(rounds=9):
-    sl.set_threads(int(sys.argv[1]) if len(sys.argv) > 1 else 2)
+def timed(functions, rounds, skipped=2):
+    """Medians of wall and of processor milliseconds; rounds alternate between all."""
+    times = {name: [] for name in functions}
+    for _ in range(rounds + skipped):
+        for name, run in functions.items():
+            start, worked = perf_counter(), process_time()
+            run()
+            times[name].append((perf_counter() - start, process_time() - worked))
+    return {k: [statistics.median(t) * 1e3 for t in zip(*v[skipped:], strict=True)] for k, v in times.items()}
+
+
+def lookups(rounds=9):
     m, points = inputs()
     out = np.empty(points.shape[:2], np.float32)
     up = np.broadcast_to(np.float32([0, 1, 0]), points.shape).copy()
@@ -123,24 +137,91 @@ def main(rounds=9):
         }
     except Exception as error:
         print(f"no llvmpipe: {error}")
-    times = {(who, name): [] for who, group in (("ours", ours), ("llvmpipe", theirs)) for name in group}
-    for _ in range(rounds + 2):
-        for (who, name), list_ in times.items():
-            start, worked = perf_counter(), process_time()
-            (ours if who == "ours" else theirs)[name]()
-            list_.append((perf_counter() - start, process_time() - worked))
+    every = {("ours", name): run for name, run in ours.items()} | {("llvmpipe", k): run for k, run in theirs.items()}
+    times = timed(every, rounds)
     reads = {"hard": 1, "pcf 16": 16, "pcf 64": 64, "pcss 16+32": 48}
     print(
         f"{'':12} {'ours ms':>9} {'cpu':>7} {'ns/read':>8} {'llvmpipe':>9} {'cpu':>7} {'ratio':>6} {'cpu':>5}  mean lit"
     )
     for name in ours:
-        wall, cpu = (statistics.median(t) * 1e3 for t in zip(*times["ours", name][2:], strict=True))
+        wall, cpu = times["ours", name]
         line = f"{name:12} {wall:9.1f} {cpu:7.1f} {cpu * 1e6 / points[..., 0].size / reads[name]:8.2f}"
         if name in theirs:
-            other, busy = (statistics.median(t) * 1e3 for t in zip(*times["llvmpipe", name][2:], strict=True))
+            other, busy = times["llvmpipe", name]
             line += f" {other:9.1f} {busy:7.1f} {other / wall:6.2f} {busy / cpu:5.2f}"
             line += f"   {ours[name]().mean():.4f} {theirs[name]().mean():.4f}"
         print(line)
+
+
+def tables(rounds=15):
+    """Sums of a picture of one channel."""
+    picture = np.random.default_rng(0).random((MAP, MAP))
+    out = np.empty((MAP + 1, MAP + 1))
+    table = sl.image.summed_area_table
+    runs = {"ours": lambda: table(picture), "ours, out=": lambda: table(picture, out=out)}
+    try:
+        import cv2
+
+        cv2.setNumThreads(sl.threads())
+        runs["cv2"] = lambda: cv2.integral(picture, sdepth=cv2.CV_64F)
+        runs["cv2, out="] = lambda: cv2.integral(picture, out, sdepth=cv2.CV_64F)
+        assert np.allclose(table(picture), cv2.integral(picture, sdepth=cv2.CV_64F), rtol=1e-12)
+    except ImportError as error:
+        print(f"no cv2: {error}")
+    times = timed(runs, rounds)
+    for name, (wall, cpu) in times.items():
+        peer = times.get(name.replace("ours", "cv2"))
+        ratio = f"   {peer[0] / wall:.2f} {peer[1] / cpu:.2f} of the speed of cv2" if peer and "ours" in name else ""
+        print(f"table of {MAP}², double, {name:10} {wall:7.2f} ms wall {cpu:7.2f} cpu{ratio}")
+
+
+def moments(rounds=3):
+    """A scene without umbra: prefilter and lookup of moments beside what searches and filters in the lookup."""
+    from shadelab.study.questions._shadow_scenes import SCENES
+
+    scene = SCENES["large penumbra"]()
+    arrays, lamp = scene.flatten(np.float32), scene.lights[0]
+    seen = sl.render(sl.scene.Scene(scene.instances, lights=(), camera=scene.camera), size=SIZE)
+    there = seen.face >= 0
+    points = seen.position[there]
+    normals = sl.mesh.face_normals(arrays.positions, arrays.faces)[seen.face[there]]
+    away = points - np.asarray(scene.camera.eye, np.float32)
+    normals = np.where((normals * away).sum(-1, keepdims=True) > 0, -normals, normals)
+    m = sl.shadow.shadow_map(arrays.positions, arrays.faces, lamp, MAP, receivers=points)
+    some = np.random.default_rng(0).choice(len(points), 20000, replace=False)
+    bvh = sl.accel.BVH(arrays.positions, arrays.faces)
+    exact = sl.shadow.ray_traced(bvh, points[some], normals[some], lamp, 256)
+    facing = ((np.asarray(lamp.center) - points[some]) * normals[some]).sum(-1) > 0.05
+    inside = facing & (exact > 0.004) & (exact < 0.996)
+    out = np.empty(len(points), np.float32)
+
+    def of_moments(filter, reduce):
+        def run():
+            table = sl.shadow.moment_map(m, filter=filter, reduce=reduce)
+            return sl.shadow.variance_soft(table, points, normals, out=out)
+
+        return run
+
+    runs = {"pcss 16+32": lambda: sl.shadow.pcss(m, points, normals, out=out)}
+    for filter, reduce in (("mip", 4), ("mip", 8), ("summed_area", 4), ("summed_area", 8)):
+        runs[f"moments, {filter}, reduce={reduce}"] = of_moments(filter, reduce)
+    times = timed(runs, rounds, 1)
+    for name, (wall, cpu) in times.items():
+        error = np.sqrt(np.mean((runs[name]()[some][inside] - exact[inside]) ** 2))
+        share = wall / times["pcss 16+32"][0], cpu / times["pcss 16+32"][1]
+        print(f"{name:32} {wall:7.1f} ms wall {cpu:7.1f} cpu, {share[0]:.2f} {share[1]:.2f} of pcss; error {error:.4f}")
+
+
+def main():
+    parts = {"lookups": lookups, "tables": tables, "moments": moments}
+    parser = argparse.ArgumentParser()
+    parser.add_argument("threads", nargs="?", type=int, default=2)
+    parser.add_argument("--only", choices=list(parts))
+    given = parser.parse_args()
+    sl.set_threads(given.threads)
+    for name, run in parts.items():
+        if given.only in (None, name):
+            run()
 
 
 if __name__ == "__main__":
