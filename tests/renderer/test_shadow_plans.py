@@ -173,3 +173,16 @@ def test_many_lights_each_have_their_own():
     found = [plan.find(f"shadow {i}").settings["technique"] for i in range(3)]
     assert found[1:] == ["hard", "hard"] and plan.find("shadow map 2").settings["kind"] == "cube"
     assert all(np.isfinite(lit).all() for lit in sl.render(boxes(lamps), plan).lit)
+
+
+@pytest.mark.parametrize("side", [0.1, 0.3])
+def test_shadows_of_few_pixels_are_no_calm(side):
+    """A map that has lost them is not called good, nor are few rays."""
+    small = [at(sl.mesh.plane(40.0), 0, 0, 0), at(sl.mesh.box((side, 2 * side, side)), 1.1, side, -1.8)]
+    sun, lamp = DirectionalLight((0.4, -1, -0.3), (9, 9, 9)), RectLight((1, 4, 0), (1, 0, 0), (0, 0, 1), (9, 9, 9))
+    scene = Scene(small, sun, Camera((0, 6, 14), (0, 0, 0)))
+    assert sl.plan(scene, (1280, 720), max_error=0.03).find("shadow").settings["technique"] == "ray_traced"
+    if side == 0.3:
+        scene = replace(scene, lights=(lamp,))
+        plan = sl.plan(scene, (1280, 720), max_error=0.03)
+        assert measured(scene, sl.render(scene, plan)) <= 0.033

@@ -26,7 +26,9 @@ _MEASURED_RAYS = 64
 # Edges reach a 60th of the picture's height to both sides. Where less light would arrive than this share of what is
 # bright, errors are relative to that.
 _REACH, _FLOOR = 60, 0.05
-_FEW, _CALM = 32, 512
+# Of fewer places than _FEW no penumbra is measured; fewer than _SCARCE, which lie close together, say little: errors are
+# then at least what is usual.
+_FEW, _SCARCE, _CALM = 32, 128, 512
 # Of events of which none was met in so many trials, that many may be expected with a chance of one in a hundred.
 _UNSEEN = 4.6
 
@@ -86,7 +88,7 @@ class OfLight:
         found = np.asarray(self._rays(slice(None), _FINDERS, 1), np.float64)
         share = _edges(found, facing, seen.covered, trial.full[1])
         at = np.flatnonzero(share)
-        self.edges = len(at) >= _FEW
+        self.edges, self.few = len(at) > 0, 0 < len(at) < _SCARCE
         if not self.edges:
             at, share = np.flatnonzero(facing), np.ones(len(facing))
         self.at = at
@@ -139,9 +141,12 @@ class OfLight:
         mean, total = float(np.average(square, weights=self.share)), float(self.share.sum())
         places = total**2 / float((self.share**2).sum())
         above = 3.0 * math.sqrt(float(np.average((square - mean) ** 2, weights=self.share)) / places)
-        if how["technique"] == "hard" or (chart is None and how["samples"] == 1) or not soft:
+        if how["technique"] == "hard" or (chart is None and how["samples"] == 1) or not soft or (self.few and chart):
             above += _UNSEEN / total
         error = math.sqrt((mean + above) / more)
+        if self.few and chart is None:
+            # Too few places to learn from: what independent rays are off by over an even penumbra.
+            error = max(error, math.sqrt(1.0 / (6.0 * how["samples"])))
         if chart is None or not len(self.calm):
             return error
         # Light that leaks into shadows, or slopes that shade themselves.
