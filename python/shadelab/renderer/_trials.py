@@ -26,8 +26,8 @@ _MEASURED_RAYS = 64
 # Edges reach a 60th of the picture's height to both sides. Where less light would arrive than this share of what is
 # bright, errors are relative to that.
 _REACH, _FLOOR = 60, 0.05
-# Of fewer places than _FEW no penumbra is measured; fewer than _SCARCE lie close together and say little: errors are then
-# at least what is usual.
+# Of fewer places than _FEW no penumbra is measured. Fewer than _SCARCE lie close together and say little: errors are
+# then at least what is usual.
 _FEW, _SCARCE, _CALM = 32, 128, 512
 # Of events of which none was met in so many trials, that many may be expected with a chance of one in a hundred.
 _UNSEEN = 4.6
