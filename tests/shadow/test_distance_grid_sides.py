@@ -5,7 +5,7 @@ import pytest
 from shadelab import mesh
 from shadelab.accel import BVH
 from shadelab.shadow import distance_grid
-from shadelab.shadow.fields import _closed
+from shadelab.shadow.grids import _closed
 
 
 def bodies(*several):

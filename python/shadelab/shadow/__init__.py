@@ -20,6 +20,7 @@ from . import (
     fields,
     filtered,
     filtered_soft,
+    grids,
     maps,
     measures,
     moments,
@@ -37,6 +38,7 @@ from .cubes import *  # noqa: F403
 from .fields import *  # noqa: F403
 from .filtered import *  # noqa: F403
 from .filtered_soft import *  # noqa: F403
+from .grids import *  # noqa: F403
 from .maps import *  # noqa: F403
 from .maps import _unit as _unit
 from .measures import *  # noqa: F403
@@ -56,6 +58,7 @@ __all__ += cubes.__all__
 __all__ += fields.__all__
 __all__ += filtered.__all__
 __all__ += filtered_soft.__all__
+__all__ += grids.__all__
 __all__ += maps.__all__
 __all__ += measures.__all__
 __all__ += moments.__all__
