@@ -68,7 +68,8 @@ def test_the_bound_is_the_least_by_linear_programming(method):
 @settings(max_examples=200, deadline=None)
 def test_two_depths_are_found(z, share, gap):
     other = min(z + gap, 1.0)
-    if other - z < 0.02:
+    # As the docstring says, rounding takes the farther depth now and then if the nearer is all but at the end.
+    if other - z < 0.02 or -1 < z < -1 + 1e-6:
         return
     moments = moments_of(np.array([z, other]), np.array([share, 1 - share]))
     for method in METHODS:

@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable, Iterable, Mapping
 from typing import Any, NamedTuple
 
+from .. import light
 from ._trials import OfLight, extended, milliseconds
 
 # The error of shadows that is not asked for otherwise: a tenth of the light, where they have edges.
@@ -158,6 +159,7 @@ def _told(
     return said
 
 
-def price_of(receivers: float, faces: int, built: bool) -> Price:
+def price_of(lamp: Any, receivers: float, faces: int, built: bool) -> Price:
     """What anything costs in a picture."""
-    return lambda chart, how: milliseconds(chart, how, receivers, faces, built)
+    parallel = isinstance(lamp, light.DirectionalLight)
+    return lambda chart, how: milliseconds(chart, how, receivers, faces, built, parallel)

@@ -114,7 +114,7 @@ def shadow_passes(
     """
     if facts.unshadowed:
         return [], [LeftOut(f"shadow{suffix}", facts.unshadowed)]
-    price = price_of(trial.receivers, len(facts.faces), built)
+    price = price_of(lamp, trial.receivers, len(facts.faces), built)
     if isinstance(lamp, light.AmbientLight):
         where = OfLight(trial, lamp)
         found = chosen(priced(of_rays(least_rays(bounds, _OCCLUSION)), price), where, bounds)

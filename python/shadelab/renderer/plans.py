@@ -36,7 +36,7 @@ def plan(
     size : (int, int)
         Width and height in pixels: what is smaller than a pixel is not worth a pass.
     max_error, budget_ms : float, optional
-        Bounds that the shadow of every light must keep (0.1 for area lights by itself), and the shading of every
+        Bounds that the shadow of every light must keep (0.1 for wide penumbrae by itself), and the shading of every
         material (0.02 by itself), as measured here. `max_error` is the error of a light's direct light where its shadow
         has edges, relative to what would arrive with nothing in between; and of a material, relative to its mean
         radiance. `budget_ms` is the time of all shadows, shared evenly by the lights, and that of all shading, on one
