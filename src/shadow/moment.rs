@@ -5,8 +5,10 @@
 //! −1 and 1 among them, is the least (Hausdorff's problem; M. Krein, A. Nudelman, *The Markov Moment Problem*, 1977).
 //!
 //! The other depths z of Hamburger's are the roots of (1, z, z²) B⁻¹ (1, t, t²)ᵀ, where B is the matrix of moments; the
-//! free depth of Hausdorff's is E[q(z) z] / E[q(z)] with q(z) = (z + 1)(1 − z)(z − t). Weights are means of Lagrange's
-//! polynomials.
+//! free depth of Hausdorff's is E[q(z) z] / E[q(z)] with q(z) = (z + 1)(1 − z)(z − t). The share is the mean of the
+//! polynomial that is 1 at the depths before t and 0 at the others. In Newton's form about the depths on one side it
+//! divides by distances from t alone: two depths before t that rounding cannot tell apart do no harm, as they would to
+//! the sum of their weights.
 //!
 //! C. Peters, R. Klein, *Moment Shadow Mapping*, I3D 2015. C. Peters et al., *Improved Moment Shadow Maps for
 //! Translucent Occluders, Soft Shadows and Single Scattering*, JCGT 2017 (bias, soft shadows).
@@ -28,62 +30,40 @@ pub fn biased<V: Lanes>(b: [V; 4], alpha: V, target: V) -> [V; 4] {
     [b[0] * keep, b[1] * keep + alpha * target, b[2] * keep, b[3] * keep + alpha * target]
 }
 
-/// The distribution with the least share before `t`: up to three depths beside t (in order), and their weights. Those
-/// that are not needed have weight 0.
+/// What must lie before `t`: its share, and the mean of its depths (`t` where there is none).
 #[derive(Clone, Copy)]
-pub struct Extremal<V> {
-    pub depths: [V; 3],
-    pub weights: [V; 3],
+pub struct Before<V> {
+    pub share: V,
+    pub depth: V,
 }
 
-impl<V: Lanes> Extremal<V> {
-    /// The share before `t`, and the mean of its depths times that share.
-    #[inline(always)]
-    pub fn before(&self, t: V) -> (V, V) {
-        let zero = t.num(0.0);
-        let (mut share, mut depth) = (zero, zero);
-        for k in 0..3 {
-            let before = self.depths[k].less(t);
-            share = share + V::select(before, self.weights[k], zero);
-            depth = depth + V::select(before, self.weights[k] * self.depths[k], zero);
-        }
-        (share, depth)
-    }
-}
-
-/// The extremal distribution of moments about a depth t.
+/// The least that lies before a depth t, of distributions with these moments. `noise` is what they are known to but for
+/// rounding.
 #[inline(always)]
-pub fn extremal<V: Lanes>(b: [V; 4], t: V, support: Support) -> Extremal<V> {
-    let (zero, one) = (t.num(0.0), t.num(1.0));
+pub fn before<V: Lanes>(b: [V; 4], t: V, support: Support, noise: V) -> Before<V> {
+    let one = t.num(1.0);
     let [low, high] = roots(b, t);
-    let free = Extremal {
-        depths: [low, high, high],
-        weights: [lagrange(b, low, t, high), lagrange(b, high, t, low), zero],
-    };
+    let free = among(b, t, low, high);
     let out = low.less(-one) | one.less(high);
     if support == Support::Hamburger || V::bits(out) == 0 {
         return free;
     }
-    let mut found = bounded(b, t);
-    for k in 0..3 {
-        found.depths[k] = V::select(out, found.depths[k], free.depths[k]);
-        found.weights[k] = V::select(out, found.weights[k], free.weights[k]);
-    }
-    found
+    let found = bounded(b, t, noise);
+    Before { share: V::select(out, found.share, free.share), depth: V::select(out, found.depth, free.depth) }
 }
 
-/// E[(z − u)(z − v)] / ((x − u)(x − v)).
+/// Of Hamburger's distribution over `low`, `high` and t.
 #[inline(always)]
-fn lagrange<V: Lanes>(b: [V; 4], x: V, u: V, v: V) -> V {
-    let share = (b[1] - b[0] * (u + v) + u * v) / ((x - u) * (x - v));
-    unit(share)
-}
-
-/// E[(z − u)(z − v)(z − w)] / ((x − u)(x − v)(x − w)).
-#[inline(always)]
-fn lagrange_3<V: Lanes>(b: [V; 4], x: V, u: V, v: V, w: V) -> V {
-    let (s, p, o) = (u + v + w, u * v + u * w + v * w, u * v * w);
-    unit((b[2] - s * b[1] + p * b[0] - o) / ((x - u) * (x - v) * (x - w)))
+fn among<V: Lanes>(b: [V; 4], t: V, low: V, high: V) -> Before<V> {
+    let (zero, one) = (t.num(0.0), t.num(1.0));
+    let both = high.less(t);
+    // The weight of t where both are before it, or of the lower one.
+    let at = V::select(both, t, low);
+    let (u, v) = (V::select(both, low, t), high);
+    let weight = unit((b[1] - b[0] * (u + v) + u * v) / ((at - u) * (at - v)));
+    let share = V::select(both, one - weight, V::select(low.less(t), weight, zero));
+    let mean = V::select(both, (b[0] - t * weight) / share, low);
+    Before { share, depth: V::select(zero.less(share), mean, t) }
 }
 
 /// Into [-`most`, `most`]; NaN stays.
@@ -92,10 +72,11 @@ fn limited<V: Lanes>(x: V, most: V) -> V {
     V::select(x.equal(x), x.max(-most).min(most), x)
 }
 
-/// Into [0, 1]; NaN stays.
+/// Into [0, 1], and 0 for what is no number: nothing is known then.
 #[inline(always)]
 fn unit<V: Lanes>(x: V) -> V {
-    V::select(x.equal(x), x.max(x.num(0.0)).min(x.num(1.0)), x)
+    let (zero, one) = (x.num(0.0), x.num(1.0));
+    V::select(x.equal(x), x.max(zero).min(one), zero)
 }
 
 /// The two other depths of Hamburger's distribution.
@@ -126,23 +107,42 @@ fn roots<V: Lanes>(b: [V; 4], t: V) -> [V; 2] {
     [V::select(numbers, low, b[0] - one), V::select(numbers, high, b[0] + one)]
 }
 
-/// Hausdorff's distribution over {-1, t, z, 1}.
+/// Of Hausdorff's distribution over {-1, t, z, 1}.
 #[inline(always)]
-fn bounded<V: Lanes>(b: [V; 4], t: V) -> Extremal<V> {
-    let (zero, one) = (t.num(0.0), t.num(1.0));
+fn bounded<V: Lanes>(b: [V; 4], t: V, noise: V) -> Before<V> {
+    let (zero, one, two) = (t.num(0.0), t.num(1.0), t.num(2.0));
     // q(z) = (1 − z²)(z − t) = −t + z + t z² − z³.
     let mean = -t + b[0] + t * b[1] - b[2];
     let with_z = -t * b[0] + b[1] + t * b[2] - b[3];
+    // If nothing is left of q but noise, all lies at −1, t and 1, and z is free: 1 gives a bound whatever the moments.
     let free = with_z / mean;
-    let free = V::select(free.equal(free), limited(free, one), b[0]);
-    let first = V::select((-one).less(t), lagrange_3(b, -one, t, free, one), zero);
-    let last = V::select(t.less(one), lagrange_3(b, one, t, free, -one), zero);
-    let middle = V::select(
-        (-one).less(free) & free.less(one) & !free.equal(t),
-        lagrange_3(b, free, t, -one, one),
-        zero,
-    );
-    Extremal { depths: [-one, free, one], weights: [first, middle, last] }
+    let known = (noise.less(mean) | mean.less(-noise)) & free.equal(free);
+    let z = V::select(known, limited(free, one), one);
+    let nearer = z.less(t);
+    // E[(X + 1)(X − z)], E[(X + 1)(X − z)(X − t)], E[(X − t)(X − z)(X − 1)].
+    let two_points = b[1] + b[0] * (one - z) - z;
+    let cubic = b[2] + b[1] * (one - z - t) - b[0] * (z + t * (one - z)) + z * t;
+    let others = b[2] - b[1] * (one + z + t) + b[0] * (z + t + z * t) - z * t;
+    // One less the polynomial that is 0 at −1 and z and 1 at t and 1, or that which is 1 at −1 alone.
+    let rest = two * (one - z);
+    let part = V::select(nearer, (two + t - z) * cubic - rest * two_points, -others);
+    let scale = one / V::select(nearer, rest * (t + one) * (t - z), two * (one + t) * (one + z));
+    let whole = V::select(nearer, one, zero);
+    let share = whole + part * scale;
+    // What noise does by way of z: its error, noise / |mean|, times z's weight, times the polynomial's slope there. An
+    // eighth of this worst case is granted, and all of what it does otherwise.
+    let by_z = t.num(0.25) / (t - z) + t.num(0.25) * (two + t - z) / rest;
+    let granted = noise * scale * V::select(nearer, rest + by_z, one);
+    let sum = b[0] + ((t + z) * cubic - t * rest * two_points) * scale;
+    let depth = V::select(nearer, (sum / share).max(-one).min(t), -one);
+    let share = unit(V::select((-one).less(t), share - granted, zero));
+    Before { share, depth: V::select(zero.less(share), depth, t) }
+}
+
+/// What moments are off by at least: as the bias is chosen by their rounding, so much as it.
+#[inline(always)]
+pub fn noise<T: Real>(alpha: f64) -> f64 {
+    alpha.max(4.0 * T::EPSILON.to_f64()).min(1e-4)
 }
 
 /// The least share before `t`, and so one less the most that is lit; moments are drawn by `alpha` towards `target`. In
@@ -153,5 +153,13 @@ pub fn moment_bound<T: Real>(m: [T; 4], t: T, support: Support, alpha: f64, targ
     if (m[0] + m[1] + m[2] + m[3] + t).is_nan() {
         return T::NAN;
     }
-    T::of(unit(extremal(biased(m, alpha, target), t, support).before(t).0))
+    // All of [-1, 1] is before what is beyond it.
+    if support == Support::Hausdorff && t > 1.0 {
+        return T::one();
+    }
+    let t = limited(t, FAR);
+    T::of(before(biased(m, alpha, target), t, support, noise::<T>(alpha)).share)
 }
+
+/// Farther is no different, and its powers are numbers.
+const FAR: f64 = 1e70;

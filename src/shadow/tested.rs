@@ -2,12 +2,12 @@
 
 use crate::dispatch;
 use crate::parallel::{self, Interrupted, Watch};
-use crate::real::{Lanes, Real};
+use crate::real::Real;
 use crate::shadow::anchor::{Feet, all, lanes, mask, put};
 use crate::shadow::exponential_variance::exponential_bound;
 use crate::shadow::filtered::Filtered;
 use crate::shadow::lookup::{LOT, Map};
-use crate::shadow::moment::{Support, biased, extremal};
+use crate::shadow::moment::{Support, before, biased, noise};
 use crate::shadow::moment_map::Stored;
 use crate::shadow::variance::{chebyshev_bound, without_bleeding};
 use crate::simd::*;
@@ -81,12 +81,10 @@ fn of_moments<T: Real, S: Simd>(
     let check = m0 + m1 + m2 + m3 + t;
     let wide = [double::<T, S>(s, m0), double::<T, S>(s, m1), double::<T, S>(s, m2), double::<T, S>(s, m3)];
     let (b, z) = (biased(wide, all::<f64, S>(s, alpha), all::<f64, S>(s, target)), double::<T, S>(s, t));
-    let (share, depth) = extremal(b, z, support).before(z);
-    let (zero, one) = (all::<f64, S>(s, 0.0), all::<f64, S>(s, 1.0));
-    let share = Lanes::min(share, one);
-    let depth = share.simd_gt(zero).select(depth / share, z);
+    let blocked = before(b, z, support, all::<f64, S>(s, noise::<T>(alpha)));
+    let lit = all::<f64, S>(s, 1.0) - blocked.share;
     let (numbers, nan) = (check.simd_eq(check), all::<T, S>(s, T::NAN));
-    (numbers.select(single::<T, S>(s, one - share), nan), numbers.select(single::<T, S>(s, depth), nan))
+    (numbers.select(single::<T, S>(s, lit), nan), numbers.select(single::<T, S>(s, blocked.depth), nan))
 }
 
 #[inline(always)]

@@ -70,11 +70,31 @@ def _two_depths(dtype: np.dtype) -> Measurement:
     n = 20_000
     gap = 10 ** rng.uniform(-2, np.log10(2), n)
     low = rng.uniform(-1, 1, n) * (1 - gap / 2) - gap / 2
-    z, share = np.stack([low, low + gap], -1).astype(dtype).astype(np.float64), rng.uniform(0.1, 0.9, n)
+    return _pairs(np.stack([low, low + gap], -1).astype(dtype), rng.uniform(0.1, 0.9, n))
+
+
+def _pairs(z: np.ndarray, share: np.ndarray) -> Measurement:
+    """How far the share before the farther of two depths is off."""
     w = np.stack([share, 1 - share], -1)
-    moments = np.stack([(w * z**k).sum(-1) for k in (1, 2, 3, 4)], -1).astype(dtype)
-    bound = shadow.moment_bound(moments, z[:, 1].astype(dtype))
-    return Measurement(float(np.abs(bound - share).max()), n, int((~np.isfinite(bound)).sum()))
+    moments = np.stack([(w * z.astype(np.float64) ** k).sum(-1) for k in (1, 2, 3, 4)], -1).astype(z.dtype)
+    bound = shadow.moment_bound(moments, z[:, 1])
+    return Measurement(float(np.abs(bound - share).max()), len(z), int((~np.isfinite(bound)).sum()))
+
+
+@extreme(
+    "shadow.moment_bound",
+    "two depths, one by an end of the range or at it",
+    domain="0 or 1e-16 to 1e-7 from -1 or 1, gaps of 0.02 to 2, shares of 0.1 to 0.9",
+    unit="absolute",
+    claim={"float32": 1e-3, "float64": 1e-10},
+)
+def _ends(dtype: np.dtype) -> Measurement:
+    rng = np.random.default_rng(2)
+    n = 20_000
+    off = np.where(rng.random(n) < 0.2, 0.0, 10 ** rng.uniform(-16, -7, n))
+    z = np.stack([-1 + off, rng.uniform(-0.98, 1, n)], -1)
+    z[::2] = -z[::2, ::-1]
+    return _pairs(z.astype(dtype), rng.uniform(0.1, 0.9, n))
 
 
 @extreme("shadow.variance_soft", "tiny and huge scenes", domain="scales 1e-6 to 1e6", unit="absolute", claim=1e-4)
