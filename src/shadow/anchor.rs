@@ -94,6 +94,28 @@ pub fn lanes<T: Real, S: Simd>(s: S, v: [T; LOT]) -> T::V8<S> {
     <T::V8<S> as SimdBase<S>>::load_array(s, v)
 }
 
+/// Lanes in double.
+#[inline(always)]
+pub fn double<T: Real, S: Simd>(s: S, v: T::V8<S>) -> <f64 as Real>::V8<S> {
+    let v = v.as_slice();
+    let mut wide = [0.0; LOT];
+    for k in 0..LOT {
+        wide[k] = v[k].to_f64();
+    }
+    lanes::<f64, S>(s, wide)
+}
+
+/// Lanes from double.
+#[inline(always)]
+pub fn single<T: Real, S: Simd>(s: S, v: <f64 as Real>::V8<S>) -> T::V8<S> {
+    let v = v.as_slice();
+    let mut narrow = [T::zero(); LOT];
+    for k in 0..LOT {
+        narrow[k] = T::of(v[k]);
+    }
+    lanes::<T, S>(s, narrow)
+}
+
 /// Lanes of set bits.
 #[inline(always)]
 pub fn mask<T: Real, S: Simd>(s: S, bits: u64) -> Mask<T, S> {

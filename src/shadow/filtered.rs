@@ -6,7 +6,7 @@
 
 use crate::math;
 use crate::real::{Lanes, Real};
-use crate::shadow::anchor::{all, lanes};
+use crate::shadow::anchor::{all, double, lanes};
 use crate::shadow::lookup::LOT;
 use crate::shadow::moment_map::{Stored, Warp, powers};
 use crate::simd::*;
@@ -82,22 +82,20 @@ impl<'a, T: Real, E: Stored, const C: usize> Filtered<'a, T, E, C> {
     ) -> [T::V8<S>; 4] {
         let scale = all::<T, S>(s, self.scale);
         let (x, y, half) = (x * scale, y * scale, [half[0] * scale, half[1] * scale]);
-        let level = self.level(s, half);
+        let found = if self.table {
+            self.of_boxes(s, live, [x, y], half)
+        } else if self.levels.len() > 1 {
+            self.of_mips(s, live, [x, y], self.level(s, half))
+        } else {
+            self.between(s, live, [x, y], &[0; LOT])
+        };
         let mut out = [[T::zero(); LOT]; 4];
         for k in 0..LOT {
-            if live >> k & 1 == 0 {
-                continue;
-            }
-            let (x, y) = (x.as_slice()[k], y.as_slice()[k]);
-            let m = if self.table {
-                self.of_box(x, y, [half[0].as_slice()[k], half[1].as_slice()[k]])
-            } else if self.levels.len() > 1 {
-                self.of_mips(x, y, level.as_slice()[k])
-            } else {
-                self.between(&self.levels[0], x, y)
-            };
             let mut four = [T::zero(); 4];
-            four[..C].copy_from_slice(&m);
+            #[allow(clippy::manual_memcpy)] // Which would be called, outside of the level.
+            for c in 0..C {
+                four[c] = found[k][c];
+            }
             let four = if E::QUANTIZED { powers(four) } else { four };
             for c in 0..4 {
                 out[c][k] = four[c];
@@ -115,9 +113,6 @@ impl<'a, T: Real, E: Stored, const C: usize> Filtered<'a, T, E, C> {
     /// box of width √3 w.
     #[inline(always)]
     fn level<S: Simd>(&self, s: S, half: [T::V8<S>; 2]) -> T::V8<S> {
-        if self.table || self.levels.len() == 1 {
-            return all::<T, S>(s, T::zero());
-        }
         let wide = Lanes::max(half[0], half[1]) * all::<T, S>(s, T::of(2.0 / 1.732_050_807_568_877_2));
         let level = math::ln(Lanes::max(wide, all::<T, S>(s, T::one())));
         let level = level * all::<T, S>(s, T::of(1.0 / std::f64::consts::LN_2));
@@ -134,54 +129,89 @@ impl<'a, T: Real, E: Stored, const C: usize> Filtered<'a, T, E, C> {
         out
     }
 
-    /// Between the four texels of a level about a place of the first; beyond the border lies the nearest texel.
+    /// Between the four texels of each one's level about a place of the first; beyond the border lies the nearest texel.
     #[inline(always)]
-    fn between(&self, at: &Scaled<T>, x: T, y: T) -> [T; C] {
-        let level = at.level;
-        let (x0, x1, fx) = neighbours(x * at.share[0] - T::of(0.5), at.last[0]);
-        let (y0, y1, fy) = neighbours(y * at.share[1] - T::of(0.5), at.last[1]);
-        let (up, down) = (level.first + y0 * level.width, level.first + y1 * level.width);
-        let (a, b) = (self.texel(up + x0), self.texel(up + x1));
-        let (c, d) = (self.texel(down + x0), self.texel(down + x1));
-        let mut out = [T::zero(); C];
-        for k in 0..C {
-            let (upper, lower) = (a[k] + (b[k] - a[k]) * fx, c[k] + (d[k] - c[k]) * fx);
-            out[k] = upper + (lower - upper) * fy;
+    fn between<S: Simd>(
+        &self,
+        s: S,
+        live: u64,
+        [x, y]: [T::V8<S>; 2],
+        levels: &[usize; LOT],
+    ) -> [[T; C]; LOT] {
+        let (mut share, mut last) = ([[T::zero(); LOT]; 2], [[T::zero(); LOT]; 2]);
+        for k in 0..LOT {
+            let at = &self.levels[levels[k]];
+            for axis in 0..2 {
+                share[axis][k] = at.share[axis];
+                last[axis][k] = at.last[axis];
+            }
+        }
+        let (x0, x1, fx) = neighbours::<T, S>(s, x * lanes::<T, S>(s, share[0]), lanes::<T, S>(s, last[0]));
+        let (y0, y1, fy) = neighbours::<T, S>(s, y * lanes::<T, S>(s, share[1]), lanes::<T, S>(s, last[1]));
+        let (fx, fy) = (fx.as_slice(), fy.as_slice());
+        let mut out = [[T::zero(); C]; LOT];
+        for k in 0..LOT {
+            if live >> k & 1 == 0 {
+                continue;
+            }
+            let level = self.levels[levels[k]].level;
+            let up = level.first + y0[k] as usize * level.width;
+            let down = level.first + y1[k] as usize * level.width;
+            let (a, b) = (self.texel(up + x0[k] as usize), self.texel(up + x1[k] as usize));
+            let (c, d) = (self.texel(down + x0[k] as usize), self.texel(down + x1[k] as usize));
+            for i in 0..C {
+                let (upper, lower) = (a[i] + (b[i] - a[i]) * fx[k], c[i] + (d[i] - c[i]) * fx[k]);
+                out[k][i] = upper + (lower - upper) * fy[k];
+            }
         }
         out
     }
 
     /// Between two levels.
     #[inline(always)]
-    fn of_mips(&self, x: T, y: T, level: T) -> [T; C] {
+    fn of_mips<S: Simd>(&self, s: S, live: u64, at: [T::V8<S>; 2], level: T::V8<S>) -> [[T; C]; LOT] {
         let low = level.floor();
-        let (l, share) = (low.to_f64() as usize, level - low);
-        let fine = self.between(&self.levels[l], x, y);
-        if !(share > T::zero()) {
-            return fine;
+        let (share, low) = (level - low, T::indices::<S>(low));
+        let (mut fine, mut coarse) = ([0; LOT], [0; LOT]);
+        for k in 0..LOT {
+            // Receivers off the map may have any level.
+            fine[k] = (low[k] as usize).min(self.levels.len() - 1);
+            coarse[k] = (fine[k] + 1).min(self.levels.len() - 1);
         }
-        let coarse = self.between(&self.levels[l + 1], x, y);
-        let mut out = [T::zero(); C];
-        for k in 0..C {
-            out[k] = fine[k] + (coarse[k] - fine[k]) * share;
+        let mut out = self.between(s, live, at, &fine);
+        let coarse = self.between(s, live, at, &coarse);
+        for k in 0..LOT {
+            for c in 0..C {
+                out[k][c] += (coarse[k][c] - out[k][c]) * share.as_slice()[k];
+            }
         }
         out
     }
 
-    /// The mean over a box, not smaller than a texel, and cut at the map's border.
+    /// The mean over boxes, not smaller than a texel, and cut at the map's border.
     #[inline(always)]
-    fn of_box(&self, x: T, y: T, half: [T; 2]) -> [T; C] {
+    fn of_boxes<S: Simd>(
+        &self,
+        s: S,
+        live: u64,
+        [x, y]: [T::V8<S>; 2],
+        half: [T::V8<S>; 2],
+    ) -> [[T; C]; LOT] {
         let size = self.levels[0].level;
-        let (x0, x1) = span(x, half[0], size.width - 1);
-        let (y0, y1) = span(y, half[1], size.height - 1);
-        let per = 1.0 / ((x1 - x0) * (y1 - y0));
-        let (left, right) = (node(x0, size.width), node(x1, size.width));
-        let (top, bottom) = (node(y0, size.height), node(y1, size.height));
-        let mut out = [T::zero(); C];
-        let upper = self.difference(top, left, right);
-        let lower = self.difference(bottom, left, right);
-        for k in 0..C {
-            out[k] = T::of((lower[k] - upper[k]) * per);
+        let (wide, left, right) = span::<T, S>(s, x, half[0], size.width - 1);
+        let (high, top, bottom) = span::<T, S>(s, y, half[1], size.height - 1);
+        let per = all::<f64, S>(s, 1.0) / (wide * high);
+        let mut out = [[T::zero(); C]; LOT];
+        for k in 0..LOT {
+            if live >> k & 1 == 0 {
+                continue;
+            }
+            let (left, right) = (left.of(k), right.of(k));
+            let upper = self.difference(top.of(k), left, right);
+            let lower = self.difference(bottom.of(k), left, right);
+            for c in 0..C {
+                out[k][c] = T::of((lower[c] - upper[c]) * per.as_slice()[k]);
+            }
         }
         out
     }
@@ -204,28 +234,53 @@ impl<'a, T: Real, E: Stored, const C: usize> Filtered<'a, T, E, C> {
     }
 }
 
-/// The texels before and after a place, where texel i is at i, and how far it is between them.
+/// The texels before and after a place, and how far it is between them.
 #[inline(always)]
-fn neighbours<T: Real>(x: T, last: T) -> (usize, usize, T) {
-    let x = Lanes::min(Lanes::max(x, T::zero()), last);
+fn neighbours<T: Real, S: Simd>(s: S, x: T::V8<S>, last: T::V8<S>) -> ([u32; LOT], [u32; LOT], T::V8<S>) {
+    let x = x - all::<T, S>(s, T::of(0.5));
+    let x = Lanes::min(Lanes::max(x, all::<T, S>(s, T::zero())), last);
     let low = x.floor();
-    let next = Lanes::min(low + T::one(), last);
-    (low.to_f64() as usize, next.to_f64() as usize, x - low)
+    let next = Lanes::min(low + all::<T, S>(s, T::one()), last);
+    (T::indices::<S>(low), T::indices::<S>(next), x - low)
 }
 
-/// From and to of a box on [0, n], at least one texel wide (or the whole of a map of one).
-#[inline(always)]
-fn span<T: Real>(x: T, half: T, n: usize) -> (f64, f64) {
-    let (x, n) = (x.to_f64(), n as f64);
-    let half = Lanes::max(half.to_f64(), 0.5);
-    let low = Lanes::min(Lanes::max(x - half, 0.0), n - 1.0);
-    let high = Lanes::max(Lanes::min(x + half, n), low + 1.0);
-    (low, high)
+/// Nodes of a table at or before places, with one after each, and how far it is between them.
+struct Nodes<V> {
+    low: [u32; LOT],
+    share: V,
 }
 
-/// The node of a table at or before a place, with one after it, and how far it is between them.
+impl<V> Nodes<V> {
+    #[inline(always)]
+    fn of<S: Simd>(&self, k: usize) -> (usize, f64)
+    where
+        V: SimdFloat<S, Element = f64>,
+    {
+        (self.low[k] as usize, self.share.as_slice()[k])
+    }
+}
+
+type Wide<S> = <f64 as Real>::V8<S>;
+
+/// How wide boxes on [0, n] are, and the nodes of their ends: at least one texel (or the whole of a map of one).
 #[inline(always)]
-fn node(x: f64, nodes: usize) -> (usize, f64) {
-    let i = Lanes::min(x.floor(), (nodes - 2) as f64);
-    (i as usize, x - i)
+fn span<T: Real, S: Simd>(
+    s: S,
+    x: T::V8<S>,
+    half: T::V8<S>,
+    n: usize,
+) -> (Wide<S>, Nodes<Wide<S>>, Nodes<Wide<S>>) {
+    let (x, half) = (double::<T, S>(s, x), double::<T, S>(s, half));
+    let (zero, one) = (all::<f64, S>(s, 0.0), all::<f64, S>(s, 1.0));
+    let (end, before) = (all::<f64, S>(s, n as f64), all::<f64, S>(s, (n - 1) as f64));
+    let half = Lanes::max(half, all::<f64, S>(s, 0.5));
+    let low = Lanes::min(Lanes::max(x - half, zero), before);
+    let high = Lanes::max(Lanes::min(x + half, end), low + one);
+    (high - low, node(low, before), node(high, before))
+}
+
+#[inline(always)]
+fn node<S: Simd>(x: Wide<S>, last: Wide<S>) -> Nodes<Wide<S>> {
+    let low = Lanes::min(x.floor(), last);
+    Nodes { low: f64::indices::<S>(low), share: x - low }
 }

@@ -3,7 +3,7 @@
 use crate::dispatch;
 use crate::parallel::{self, Interrupted, Watch};
 use crate::real::Real;
-use crate::shadow::anchor::{Feet, all, lanes, mask, put};
+use crate::shadow::anchor::{Feet, all, double, mask, put, single};
 use crate::shadow::exponential_variance::exponential_bound;
 use crate::shadow::filtered::Filtered;
 use crate::shadow::lookup::{LOT, Map};
@@ -85,26 +85,6 @@ fn of_moments<T: Real, S: Simd>(
     let lit = all::<f64, S>(s, 1.0) - blocked.share;
     let (numbers, nan) = (check.simd_eq(check), all::<T, S>(s, T::NAN));
     (numbers.select(single::<T, S>(s, lit), nan), numbers.select(single::<T, S>(s, blocked.depth), nan))
-}
-
-#[inline(always)]
-fn double<T: Real, S: Simd>(s: S, v: T::V8<S>) -> <f64 as Real>::V8<S> {
-    let v = v.as_slice();
-    let mut wide = [0.0; LOT];
-    for k in 0..LOT {
-        wide[k] = v[k].to_f64();
-    }
-    lanes::<f64, S>(s, wide)
-}
-
-#[inline(always)]
-fn single<T: Real, S: Simd>(s: S, v: <f64 as Real>::V8<S>) -> T::V8<S> {
-    let v = v.as_slice();
-    let mut narrow = [T::zero(); LOT];
-    for k in 0..LOT {
-        narrow[k] = T::of(v[k]);
-    }
-    lanes::<T, S>(s, narrow)
 }
 
 /// What a lot of lookups found.
