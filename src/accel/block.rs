@@ -147,13 +147,16 @@ fn splat4x3<T: Real, S: Simd>(s: S, v: [T; 3]) -> [T::V4<S>; 3] {
 /// One vertex of each of four triangles.
 #[inline(always)]
 pub fn corner<T: Real, S: Simd>(s: S, block: &Block<T>, vertex: usize, order: [usize; 3]) -> [T::V4<S>; 3] {
-    let [x, y, z] = in_order(order, [0, 1, 2]);
     let v = &block.vertices[vertex];
-    [
-        SimdBase::load_array_ref(s, &v[x]),
-        SimdBase::load_array_ref(s, &v[y]),
-        SimdBase::load_array_ref(s, &v[z]),
-    ]
+    debug_assert!(order[0] < 3 && order[1] < 3 && order[2] < 3);
+    // Sound: a heading's order is one of the three axes. Checked, the compiler reads it anew at every vertex.
+    unsafe {
+        [
+            SimdBase::load_array_ref(s, v.get_unchecked(order[0])),
+            SimdBase::load_array_ref(s, v.get_unchecked(order[1])),
+            SimdBase::load_array_ref(s, v.get_unchecked(order[2])),
+        ]
+    }
 }
 
 /// The planes of triangles' own boxes that rays of a heading enter and leave through, like the corners in its order.

@@ -6,7 +6,7 @@
 
 use super::node::{Child, WIDTH};
 use super::packet;
-use super::single;
+use super::single::{self, Sides};
 use super::{Bvh, fetch};
 use crate::accel::batch::Source;
 use crate::accel::block::{self, BLOCK};
@@ -31,6 +31,7 @@ const CACHED: usize = 1 << 20;
 struct Member<T> {
     ray: Ready<T>,
     heading: Heading,
+    sides: Sides,
     ignore: i32,
     number: u32,
 }
@@ -82,7 +83,8 @@ impl<T: Real> Crowd<T> {
             for &number in numbers {
                 let ray = rays.ray(number as usize);
                 if let Some((ready, heading)) = ray::ready(&tree.bounds, &ray) {
-                    self.members.push(Member { ray: ready, heading, ignore: ray.ignore_face, number });
+                    let (sides, ignore) = (Sides::of(heading), ray.ignore_face);
+                    self.members.push(Member { ray: ready, heading, sides, ignore, number });
                 }
             }
             if alone {
@@ -99,13 +101,13 @@ impl<T: Real> Crowd<T> {
     #[inline(always)]
     fn nodes_of_one<S: Simd>(&mut self, s: S, tree: &Bvh<T>, met: &mut Met<T>) -> Result<(), OutOfMemory> {
         let Some(of) = self.members.first() else { return Ok(()) };
-        let (ray, heading) = (of.ray, of.heading);
+        let (ray, sides) = (of.ray, of.sides);
         let mut child = Child::ROOT;
         loop {
             self.nodes.reserve()?;
             self.leaves.reserve()?;
             let node = tree.node(child);
-            let (bits, _) = single::children(s, node, &ray, heading, ray.t_max);
+            let (bits, _) = single::children(s, node, &ray, &sides, ray.t_max);
             self.nodes.append(0, &node.children, bits & !node.leaves);
             self.leaves.append(0, &node.children, bits & node.leaves);
             match self.nodes.0.pop() {
@@ -136,7 +138,7 @@ impl<T: Real> Crowd<T> {
                 self.nodes.reserve()?;
                 self.leaves.reserve()?;
                 let (node, of) = (tree.node(visit.child()), &self.members[visit.member()]);
-                let (bits, _) = single::children(s, node, &of.ray, of.heading, of.ray.t_max);
+                let (bits, _) = single::children(s, node, &of.ray, &of.sides, of.ray.t_max);
                 self.nodes.append(visit.member(), &node.children, bits & !node.leaves);
                 self.leaves.append(visit.member(), &node.children, bits & node.leaves);
             }

@@ -8,7 +8,7 @@ pub const WIDTH: usize = 8;
 /// Deepest level of a tree; the builder keeps to it.
 pub const MAX_DEPTH: usize = 72;
 /// At each level all children but one wait.
-const STACK: usize = MAX_DEPTH * (WIDTH - 1) + 1;
+const STACK: usize = MAX_DEPTH * (WIDTH - 1) + 1 + WIDTH;
 
 /// What a child slot refers to: a node, a run of blocks, or nothing.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -65,6 +65,16 @@ impl<T: Real> Node<T> {
             leaves: 0,
         }
     }
+    /// Eight planes by their place: the lower ones of the three axes, then the upper.
+    ///
+    /// # Safety
+    /// `place` must be a multiple of [`WIDTH`] below six times it.
+    #[inline(always)]
+    pub unsafe fn planes_at(&self, place: usize) -> &[T; WIDTH] {
+        debug_assert!(place.is_multiple_of(WIDTH) && place < 6 * WIDTH);
+        // Sound: by the contract it lies within the planes.
+        unsafe { &*(&raw const self.planes).cast::<T>().add(place).cast::<[T; WIDTH]>() }
+    }
     pub fn set_child(&mut self, slot: usize, child: Child) {
         self.children[slot] = child;
         self.leaves |= (child.is_leaf() as u32) << slot;
@@ -80,6 +90,12 @@ impl Entry {
     #[inline(always)]
     pub fn new<T: Real>(t: T, child: Child) -> Self {
         Entry((key(t) as u64) << 32 | child.0 as u64)
+    }
+    /// The `k`th of the children of a node in the order of [`SLOTS`], with entries that are not before zero.
+    #[inline(always)]
+    fn of<T: Real>(slots: u32, k: u32, node: &Node<T>, entries: &[T; WIDTH]) -> Self {
+        let slot = (slots >> (3 * k)) as usize & (WIDTH - 1);
+        Entry(((entries[slot].to_f64() as f32).to_bits() as u64) << 32 | node.children[slot].0 as u64)
     }
     #[inline(always)]
     pub fn child(self) -> Child {
@@ -106,6 +122,31 @@ pub fn key<T: Real>(t: T) -> u32 {
     // Clamped first, so that single precision never leaves its registers for double.
     (Lanes::max(t, T::zero()).to_f64() as f32).to_bits()
 }
+
+/// The places of the set bits of each number in rising order and then those of the others, three bits each; the number
+/// of the set ones above.
+static SLOTS: [u32; 256] = {
+    let mut slots = [0; 256];
+    let mut bits = 0;
+    while bits < 256 {
+        let mut k = 0;
+        let mut set = 2;
+        while set > 0 {
+            set -= 1;
+            let mut slot = 0;
+            while slot < WIDTH {
+                if bits >> slot & 1 == set {
+                    slots[bits] |= (slot as u32) << (3 * k);
+                    k += 1;
+                }
+                slot += 1;
+            }
+        }
+        slots[bits] |= bits.count_ones() << 24;
+        bits += 1;
+    }
+    slots
+};
 
 /// Children that wait, the nearest on top.
 pub struct Stack {
@@ -142,6 +183,38 @@ impl Stack {
         self.len -= 1;
         // Sound: every entry below `len` was written by `push` or `insert`.
         Some(unsafe { self.entries.get_unchecked(self.len).assume_init() })
+    }
+    /// Adds the children of a node that a ray passes, the nearest on top. Up to three of them, which is the rule,
+    /// without a branch: how many there are and in which order could not be guessed. No entry is before zero, and those
+    /// of the other children are infinite.
+    #[inline(always)]
+    pub fn add<T: Real>(&mut self, node: &Node<T>, bits: u32, entries: &[T; WIDTH]) -> Child {
+        let (slots, base) = (SLOTS[bits as usize & 0xff], self.len);
+        let number = slots >> 24;
+        let first = Entry::of(slots, 0, node, entries);
+        let second = Entry::of(slots, 1, node, entries);
+        let third = Entry::of(slots, 2, node, entries);
+        let (near, far) = (first.min(second), first.max(second));
+        let (middle, last) = (far.min(third), far.max(third));
+        let (near, middle) = (near.min(middle), near.max(middle));
+        debug_assert!(base + WIDTH <= STACK);
+        // Sound: as `push`; what is written beyond the length is within the room of a node.
+        unsafe {
+            let mut len = base;
+            self.entries.get_unchecked_mut(len).write(last);
+            len += (number > 2) as usize;
+            self.entries.get_unchecked_mut(len).write(middle);
+            self.len = len + (number > 1) as usize;
+        }
+        let mut near = near;
+        let mut k = 3;
+        while k < number {
+            let other = Entry::of(slots, k, node, entries);
+            self.insert(base, other.max(near));
+            near = other.min(near);
+            k += 1;
+        }
+        near.child()
     }
     /// Puts `e` among the entries from `base` on, which are in falling order.
     #[inline(always)]

@@ -1,12 +1,55 @@
 //! One ray through the tree: a node's eight boxes in lanes, the nearest child first.
 
 use super::Bvh;
-use super::node::{Child, Entry, Node, Stack, key};
+use super::node::{Child, Entry, Node, Stack, WIDTH, key};
 use crate::accel::Hit;
 use crate::accel::block::leaf;
 use crate::accel::ray::{Heading, Ready};
 use crate::real::{Lanes, Real};
 use crate::simd::{Simd, SimdBase};
+
+/// Where a node holds the planes that rays of a heading enter and leave its boxes through, by axis.
+#[derive(Clone, Copy)]
+pub struct Sides {
+    near: [usize; 3],
+    far: [usize; 3],
+}
+
+impl Sides {
+    #[inline(always)]
+    pub fn of(heading: Heading) -> Self {
+        let n = heading.negative;
+        let place = [n[0] & 1, n[1] & 1, n[2] & 1];
+        let (low, high) = ([0, WIDTH, 2 * WIDTH], [3 * WIDTH, 4 * WIDTH, 5 * WIDTH]);
+        let ahead = |k: usize, side: usize| if side == 0 { low[k] } else { high[k] };
+        Sides {
+            near: [ahead(0, place[0]), ahead(1, place[1]), ahead(2, place[2])],
+            far: [ahead(0, 1 - place[0]), ahead(1, 1 - place[1]), ahead(2, 1 - place[2])],
+        }
+    }
+}
+
+/// The children of a node that the ray passes before `end`, and where it enters each.
+#[inline(always)]
+fn passed<T: Real, S: Simd>(
+    s: S,
+    node: &Node<T>,
+    ray: &Ready<T>,
+    sides: &Sides,
+    end: T,
+) -> (<T::V8<S> as Lanes>::Mask, T::V8<S>) {
+    let (mut entry, mut exit) = (splat8::<T, S>(s, ray.t_min), splat8::<T, S>(s, end));
+    for k in 0..3 {
+        let inverse = splat8::<T, S>(s, ray.inverse[k]);
+        // Sound: sides are places of planes within a node.
+        let (near, far) = unsafe { (node.planes_at(sides.near[k]), node.planes_at(sides.far[k])) };
+        let near = (T::V8::<S>::load_array_ref(s, near) - splat8::<T, S>(s, ray.near[k])) * inverse;
+        let far = (T::V8::<S>::load_array_ref(s, far) - splat8::<T, S>(s, ray.far[k])) * inverse;
+        // The bare minimum and maximum of the machine: no NaN arises, and the sign of a zero does not matter here.
+        (entry, exit) = (SimdBase::max(entry, near), SimdBase::min(exit, far));
+    }
+    (Lanes::less_eq(entry, exit), entry)
+}
 
 /// Which children of a node the ray passes before `end`, as bits, and where it enters each.
 #[inline(always)]
@@ -14,20 +57,36 @@ pub fn children<T: Real, S: Simd>(
     s: S,
     node: &Node<T>,
     ray: &Ready<T>,
-    heading: Heading,
+    sides: &Sides,
     end: T,
 ) -> (u32, [T; 8]) {
-    let end = splat8::<T, S>(s, end);
-    let (mut entry, mut exit) = (splat8::<T, S>(s, ray.t_min), end);
-    for k in 0..3 {
-        let side = heading.negative[k];
-        let inverse = splat8::<T, S>(s, ray.inverse[k]);
-        let near = (planes(s, node, side, k) - splat8::<T, S>(s, ray.near[k])) * inverse;
-        let far = (planes(s, node, 1 - side, k) - splat8::<T, S>(s, ray.far[k])) * inverse;
-        // The bare minimum and maximum of the machine: no NaN arises, and the sign of a zero does not matter here.
-        (entry, exit) = (SimdBase::max(entry, near), SimdBase::min(exit, far));
+    let (mask, entry) = passed(s, node, ray, sides, end);
+    (T::V8::<S>::bits(mask), entry.to_array())
+}
+
+/// The nearest of the children of a node that the ray passes before `end`; the others wait on the stack.
+#[inline(always)]
+pub fn descend_to<T: Real, S: Simd>(
+    s: S,
+    node: &Node<T>,
+    ray: &Ready<T>,
+    sides: &Sides,
+    end: T,
+    stack: &mut Stack,
+) -> Option<Child> {
+    let (mask, entry) = passed(s, node, ray, sides, end);
+    let bits = T::V8::<S>::bits(mask) & 0xff;
+    if bits == 0 {
+        return None;
     }
-    (T::V8::<S>::bits(Lanes::less_eq(entry, exit)), entry.to_array())
+    if bits & (bits - 1) == 0 {
+        return Some(node.children[bits.trailing_zeros() as usize & (WIDTH - 1)]);
+    }
+    let zero = splat8::<T, S>(s, T::zero());
+    // What is added makes of -0 +0.
+    let entry = SimdBase::max(entry, zero) + zero;
+    let entry = T::V8::<S>::select(mask, entry, splat8(s, T::INFINITY));
+    Some(stack.add(node, bits, &entry.to_array()))
 }
 
 #[inline(always)]
@@ -51,7 +110,7 @@ pub fn trace<const ANY: bool, T: Real, S: Simd>(
     heading: Heading,
     ignore: i32,
 ) -> Hit<T> {
-    let mut hit = ray.unhit();
+    let (mut hit, sides) = (ray.unhit(), Sides::of(heading));
     let mut stack = Stack::new();
     stack.push(Entry::new(T::zero(), Child::ROOT));
     while let Some(entry) = stack.pop() {
@@ -67,7 +126,7 @@ pub fn trace<const ANY: bool, T: Real, S: Simd>(
                 break;
             }
             let node = tree.node(child);
-            let (mut bits, entries) = children(s, node, ray, heading, hit.t);
+            let (mut bits, entries) = children(s, node, ray, &sides, hit.t);
             let Some(nearest) = descend(&mut bits, node, &entries, &mut stack) else { break };
             child = nearest;
         }

@@ -1,8 +1,10 @@
 //! Many rays that have little in common: sixteen are traced in turns, a node each, and the node that a ray needs next
-//! is fetched while the others work. Memory latency, not arithmetic, is what such rays wait for.
+//! is fetched while the others work. In large trees rays would otherwise wait for memory, and in small ones for branches
+//! that were guessed wrong and for results that the next step needs.
 
+use super::Bvh;
 use super::node::{Child, Stack, key};
-use super::{Bvh, single};
+use super::single::{self, Sides};
 use crate::accel::Hit;
 use crate::accel::batch::{Sink, Source};
 use crate::accel::block::leaf;
@@ -13,13 +15,11 @@ use crate::simd::{Simd, SimdBase};
 /// Rays under way at a time.
 const ROWS: usize = 16;
 
-/// Trees smaller than this lie in the processor's caches: rays have nothing to wait for, and go one after the other.
-const CACHED: usize = 1 << 20;
-
 /// A ray under way.
 struct Row<T> {
     ray: Ready<T>,
     heading: Heading,
+    sides: Sides,
     ignore: i32,
     hit: Hit<T>,
     /// What it visits in its next turn.
@@ -31,14 +31,16 @@ struct Row<T> {
 impl<T: Real> Row<T> {
     #[inline(always)]
     fn new(index: usize, ignore: i32, (ray, heading): (Ready<T>, Heading)) -> Self {
-        Row { hit: ray.unhit(), ray, heading, ignore, child: Child::ROOT, index, stack: Stack::new() }
+        let stack = Stack::new();
+        let sides = Sides::of(heading);
+        Row { hit: ray.unhit(), ray, heading, sides, ignore, child: Child::ROOT, index, stack }
     }
 
     /// [`Row::new`] in place: the stack is large, and need not be moved.
     #[inline(always)]
     fn restart(&mut self, index: usize, ignore: i32, (ray, heading): (Ready<T>, Heading)) {
         self.hit = ray.unhit();
-        (self.ray, self.heading, self.ignore) = (ray, heading, ignore);
+        (self.ray, self.heading, self.sides, self.ignore) = (ray, heading, Sides::of(heading), ignore);
         (self.child, self.index) = (Child::ROOT, index);
         self.stack.clear();
     }
@@ -53,8 +55,9 @@ impl<T: Real> Row<T> {
             }
         } else {
             let node = tree.node(self.child);
-            let (mut bits, entries) = single::children(s, node, &self.ray, self.heading, self.hit.t);
-            if let Some(nearest) = single::descend(&mut bits, node, &entries, &mut self.stack) {
+            if let Some(nearest) =
+                single::descend_to(s, node, &self.ray, &self.sides, self.hit.t, &mut self.stack)
+            {
                 self.child = nearest;
                 tree.prefetch(self.child);
                 return true;
@@ -151,12 +154,6 @@ pub fn trace<const ANY: bool, T: Real, S: Simd, R: Source<T>, F: Sink<T>>(
         return;
     }
     let mut queue = Queue::new(s, &tree.bounds, rays, chosen);
-    if size_of_val(&*tree.nodes) + size_of_val(&*tree.blocks) < CACHED {
-        while let Some((index, ignore, (ray, heading))) = queue.take(s, answer) {
-            answer.put(index, ray.finish(single::trace::<ANY, T, S>(s, tree, &ray, heading, ignore)));
-        }
-        return;
-    }
     let mut rows: Vec<Row<T>> = Vec::with_capacity(ROWS.min(chosen.len()));
     while rows.len() < ROWS
         && let Some((index, ignore, made)) = queue.take(s, answer)

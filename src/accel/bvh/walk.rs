@@ -22,7 +22,7 @@ impl<T: Real> Structure<T> for Bvh<T> {
     /// Boxes counted are those of every node visited, empty slots left out.
     #[inline(always)]
     fn walk<S: Simd, V: Visit<T>>(&self, s: S, ray: &Ready<T>, heading: Heading, visit: &mut V) {
-        let mut stack = Stack::new();
+        let (mut stack, sides) = (Stack::new(), single::Sides::of(heading));
         stack.push(Entry::new(T::zero(), Child::ROOT));
         while let Some(entry) = stack.pop() {
             if entry.after(key(visit.end())) {
@@ -37,7 +37,7 @@ impl<T: Real> Structure<T> for Bvh<T> {
             }
             let node = self.node(child);
             visit.boxes(node.children.iter().filter(|&&c| c != Child::EMPTY).count());
-            let (mut bits, entries) = single::children(s, node, ray, heading, visit.end());
+            let (mut bits, entries) = single::children(s, node, ray, &sides, visit.end());
             let base = stack.len();
             while let Some(entry) = single::next(&mut bits, node, &entries) {
                 stack.insert(base, entry);
