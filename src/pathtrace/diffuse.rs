@@ -289,7 +289,7 @@ fn arrivals<T: Real, S: Simd>(
 
 /// The same vector in every lane.
 #[inline(always)]
-fn splat<V: Lanes>(like: V, x: Vec3<V::Elem>) -> Vec3<V> {
+pub fn splat<V: Lanes>(like: V, x: Vec3<V::Elem>) -> Vec3<V> {
     Vec3::new(like.like(x.x), like.like(x.y), like.like(x.z))
 }
 

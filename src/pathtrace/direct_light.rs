@@ -12,7 +12,7 @@
 //! E. Veach, L. Guibas, *Optimally combining sampling techniques for Monte Carlo rendering*, 1995; A. B. Owen,
 //! *Scrambled net variance for integrals of smooth functions*, 1997.
 
-use super::lighting::{hidden, hide};
+use super::standing::Standing;
 use super::{Tally, leave};
 use crate::accel::{Bvh, Ray};
 use crate::brdf::ggx;
@@ -49,8 +49,7 @@ struct Bench<T> {
 struct Asked<'a, T> {
     lights: &'a [Light<T>],
     number: usize,
-    /// Whether any stands.
-    hide: bool,
+    standing: &'a Standing<T>,
     /// How far above surfaces rays start.
     offset: T,
 }
@@ -63,7 +62,7 @@ impl<T: Real> Asked<'_, T> {
     /// Whether another light stops the ray.
     #[inline(always)]
     fn hidden(&self, ray: &Ray<T>) -> bool {
-        self.hide && hidden(self.lights, ray, self.number, self.offset)
+        self.standing.hides(self.lights, ray, self.number, self.offset)
     }
 }
 
@@ -173,13 +172,14 @@ pub fn direct_light_many<T: Real>(
     variance: &mut [[T; 3]],
 ) -> Result<(), Interrupted> {
     let digits = digits(samples.start, samples.count);
+    let standing = Standing::new(lights);
     // About 10 ms of rays.
     let rays = 2 * digits.len().max(1) * lights.len().max(1);
     parallel::for_each(
         watch,
         (mean, variance),
         (100_000 / rays).clamp(1, 1 << 12),
-        |first, (mean, variance)| dispatch!(s => body(s, bvh, receivers, footing, lights, samples.seed, &digits, first, mean, variance)),
+        |first, (mean, variance)| dispatch!(s => body(s, bvh, receivers, footing, lights, &standing, samples.seed, &digits, first, mean, variance)),
     )
 }
 
@@ -190,13 +190,13 @@ fn body<T: Real, S: Simd>(
     receivers: &Receivers<'_, T>,
     footing: Footing<'_, T>,
     lights: &[Light<T>],
+    standing: &Standing<T>,
     seed: u64,
     digits: &[[u32; 3]],
     first: usize,
     mean: &mut [[T; 3]],
     variance: &mut [[T; 3]],
 ) {
-    let hide = hide(lights, lights.len());
     let mut bench = Bench { rays: Vec::new(), carried: Vec::new(), blocked: Vec::new() };
     for k in 0..mean.len() {
         let i = first + k;
@@ -205,7 +205,7 @@ fn body<T: Real, S: Simd>(
             let normal = footing.normals.map_or(receiver.frame.z, |n| n[i].into());
             let site = Site { receiver, normal, offset: footing.offset };
             for (l, light) in lights.iter().enumerate() {
-                let asked = Asked { lights, number: l, hide, offset: footing.offset };
+                let asked = Asked { lights, number: l, standing, offset: footing.offset };
                 if light.has_area() {
                     let stream = (l as u64) << 40 | i as u64;
                     let scramble = std::array::from_fn(|d| Scramble::new(seed, stream, d as u32));

@@ -5,6 +5,7 @@
 //! P. Shirley, C. Wang, K. Zimmerman, *Monte Carlo techniques for direct lighting calculations*, 1996.
 
 use super::emitters::brightness;
+use super::standing::Standing;
 use super::{Emitters, Surfaces};
 use crate::accel::Ray;
 use crate::light::tree::{self, Source};
@@ -38,8 +39,10 @@ pub struct Lighting<T> {
     faces: usize,
     count: usize,
     sky: bool,
-    /// Whether lights may stand before other sources.
-    hide: bool,
+    /// What rays may meet.
+    pub standing: Standing<T>,
+    /// Light that comes evenly from everywhere.
+    ambient: Vec<u32>,
 }
 
 impl<T: Real> Lighting<T> {
@@ -83,14 +86,17 @@ impl<T: Real> Lighting<T> {
             faces,
             count: sources.len(),
             sky: scene.environment.is_some(),
-            hide: hide(scene.lights, sources.len()),
+            standing: Standing::new(scene.lights),
+            ambient: (0..scene.lights.len() as u32)
+                .filter(|&k| matches!(scene.lights[k as usize], Light::Ambient { .. }))
+                .collect(),
         }
     }
 
-    /// Whether a light stands in the way of a shadow ray to another source: as those stop paths that meet them.
+    /// The lights that shine evenly from everywhere.
     #[inline(always)]
-    pub fn hides(&self, lights: &[Light<T>], ray: &Ray<T>, source: usize, offset: T) -> bool {
-        self.hide && hidden(lights, ray, source, offset)
+    pub fn ambient(&self) -> &[u32] {
+        &self.ambient
     }
 
     #[inline(always)]
@@ -243,83 +249,7 @@ impl<T: Real> Surfaces<'_, T> {
         let chance = lighting.chance(source, ray.origin.into(), normal, depth);
         Some((emission.into(), self.face_pdf(lighting, face, cos_light, distance) * chance))
     }
-
-    /// The nearest light that shines against a ray before `t`: which, its radiance, and the density of drawing it.
-    ///
-    /// Of lights in one place the first is met, as by [`hidden`].
-    #[inline(always)]
-    pub fn light_before(&self, origin: Vec3<T>, direction: Vec3<T>, t: T) -> Option<(usize, Vec3<T>, T)> {
-        let mut nearest = (t, None);
-        for (k, light) in self.lights.iter().enumerate() {
-            let Some(sighting) = light.meet(origin, direction) else { continue };
-            if nearer(sighting.distance, nearest.0, nearest.1.is_some()) {
-                nearest = (sighting.distance, Some((k, light.shown(origin, &sighting), sighting.pdf)));
-            }
-        }
-        nearest.1
-    }
 }
-
-/// Whether lights may stand before others of `sources`.
-pub fn hide<T: Real>(lights: &[Light<T>], sources: usize) -> bool {
-    sources > 1 && lights.iter().any(Light::stands)
-}
-
-/// Whether a light stands in the way of a shadow ray to the source, which starts `offset` above a surface.
-///
-/// Lights in one place do not put each other out: there the first of those that stand stops the others.
-#[inline(always)]
-pub fn hidden<T: Real>(lights: &[Light<T>], ray: &Ray<T>, source: usize, offset: T) -> bool {
-    let mut near = ray.t_max;
-    if near.is_finite() {
-        near = near + (offset + offset) + T::of(ROUNDING) * T::EPSILON * near;
-    }
-    for (k, light) in lights.iter().enumerate() {
-        if k == source || !light.stands() {
-            continue;
-        }
-        if let Some(sighting) = light.meet(ray.origin.into(), ray.direction.into())
-            && sighting.distance < near
-            && before(sighting.distance, k, lights, ray, source, offset)
-        {
-            return true;
-        }
-    }
-    false
-}
-
-/// Whether light `k`, met at a distance about the source's or nearer, comes before the source: by where the ray meets that.
-#[inline(never)]
-fn before<T: Real>(
-    distance: T,
-    k: usize,
-    lights: &[Light<T>],
-    ray: &Ray<T>,
-    source: usize,
-    offset: T,
-) -> bool {
-    let asked = lights.get(source);
-    let (mut end, mut slack) = (ray.t_max, offset + offset);
-    if let Some(met) = asked.and_then(|light| light.meet(ray.origin.into(), ray.direction.into())) {
-        (end, slack) = (met.distance, T::zero());
-    }
-    if !end.is_finite() {
-        return distance < end;
-    }
-    slack += T::of(ROUNDING) * T::EPSILON * end;
-    let later = k < source && asked.is_none_or(Light::stands);
-    distance < if later { end + slack } else { end - slack }
-}
-
-/// Whether a light at a distance stands before what was met so far, a surface or a light: not if that is a light in the
-/// same place.
-#[inline(always)]
-pub fn nearer<T: Real>(distance: T, met: T, light: bool) -> bool {
-    distance < if light { met - T::of(ROUNDING) * T::EPSILON * met } else { met }
-}
-
-/// Rounding units by which the distances of lights in one place may differ.
-const ROUNDING: f64 = 32.0;
 
 /// The side from which light comes, if it comes from one.
 #[inline(always)]

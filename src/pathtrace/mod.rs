@@ -19,6 +19,7 @@ pub mod direct_light;
 pub mod distribution;
 mod draws;
 mod emitters;
+mod eye;
 pub(crate) mod film;
 pub mod filter;
 mod lighting;
@@ -27,6 +28,7 @@ pub mod ray_cast;
 #[cfg_attr(not(feature = "python"), allow(dead_code))] // asked for by Python alone
 pub(crate) mod recursion;
 mod sky;
+mod standing;
 mod surface;
 mod wave;
 #[cfg_attr(not(feature = "python"), allow(dead_code))] // asked for by Python alone

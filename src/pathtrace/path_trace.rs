@@ -15,10 +15,11 @@
 use super::Surfaces;
 use super::camera::Camera;
 use super::draws::Draws;
+use super::eye;
 use super::film::Tally;
 use super::filter::Filter;
 use super::lighting::{Lighting, Selection};
-use super::wave::{Tracer, Wave, purpose};
+use super::wave::{Tracer, Wave};
 use crate::brdf::Bsdf;
 use crate::brdf::Row;
 use crate::dispatch;
@@ -27,7 +28,7 @@ use crate::raster::picture::Picture;
 use crate::real::Real;
 use crate::sampling::sampler::Sampler;
 use crate::simd::Simd;
-use std::ops::Range;
+use crate::vec::Vec3;
 
 /// How light is looked for.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -119,14 +120,14 @@ impl<'a> Tiles<'a> {
     }
     /// The number in the picture, the column and the row of the pixel at a place.
     #[inline(always)]
-    fn pixel(&self, x: usize, y: usize, width: usize) -> (usize, [usize; 2]) {
+    fn pixel(&self, x: usize, y: usize, width: usize) -> (usize, [u32; 2]) {
         match self.list {
             Some(list) => {
                 let pixel = list[x] as usize;
-                (pixel, [pixel % width, pixel / width])
+                (pixel, [(pixel % width) as u32, (pixel / width) as u32])
             }
             // The picture's own width.
-            None => (y * self.width + x, [x, y]),
+            None => (y * self.width + x, [x as u32, y as u32]),
         }
     }
 }
@@ -155,6 +156,24 @@ impl<T: Real> Sheets<'_, T> {
             }
             if let Some(removed) = &self.removed {
                 removed.row(x, y, 1)[0] = narrow(tally.removed);
+            }
+        }
+    }
+    /// The only sample of a pixel, as [`Sheets::put`] puts its tally.
+    ///
+    /// # Safety
+    /// The pixel must not be in use elsewhere.
+    #[inline(always)]
+    unsafe fn put_lone(&self, x: usize, y: usize, sum: Vec3<T>) {
+        // Sound: as the caller promises.
+        unsafe {
+            self.mean.row(x, y, 1)[0] = sum.to_array();
+            self.variance.row(x, y, 1)[0] = [T::INFINITY; 3];
+            if let Some(outliers) = &self.outliers {
+                outliers.row(x, y, 1)[0] = 0;
+            }
+            if let Some(removed) = &self.removed {
+                removed.row(x, y, 1)[0] = [T::zero(); 3];
             }
         }
     }
@@ -229,24 +248,40 @@ fn tile<T: Real, S: Simd>(
 ) {
     let options = tracer.options;
     let mut wave = Wave::new(WAVE);
+    let mut places: Vec<[u32; 2]> = Vec::with_capacity(WAVE);
+    // Of samples so far, where pixels have more than a wave takes.
+    let mut tallies: Vec<Tally> = Vec::new();
     let pixels = side[0] * side[1];
     // Samples of each pixel, pixels of each wave.
     let each = (WAVE / pixels).clamp(1, options.samples as usize) as u32;
     let group = (WAVE / each as usize).clamp(1, pixels);
-    // Of samples so far, where pixels have more than a wave takes.
-    let mut tallies: Vec<Tally> = Vec::new();
     let order = order(side);
     for some in order.chunks(group) {
         tallies.clear();
         for start in (0..options.samples).step_by(each as usize) {
             let count = each.min(options.samples - start);
             wave.clear();
+            places.clear();
+            let begin = (options.start + start).wrapping_sub(options.base);
             for &[x, y] in some {
-                let pixel = tiles.pixel(first[0] + x as usize, first[1] + y as usize, options.width);
-                let samples = options.start + start..options.start + start + count;
-                look(tracer, camera, filter, pixel, samples, &mut wave);
+                let (pixel, place) = tiles.pixel(first[0] + x as usize, first[1] + y as usize, options.width);
+                let key = tracer.draws.key(pixel as u32);
+                for k in 0..count {
+                    wave.keys.push(key);
+                    wave.samples.push(begin.wrapping_add(k));
+                    places.push(place);
+                }
             }
+            eye::start(s, tracer, camera, filter, &places, &mut wave);
             tracer.trace(s, &mut wave);
+            if options.samples == 1 && sheets.kept.is_none() && options.clamp == f64::INFINITY {
+                for k in 0..some.len() {
+                    let (x, y) = (first[0] + some[k][0] as usize, first[1] + some[k][1] as usize);
+                    // Sound: as below.
+                    unsafe { sheets.put_lone(x, y, wave.sums[k]) };
+                }
+                continue;
+            }
             for (k, sums) in wave.sums.chunks(count as usize).enumerate() {
                 let mut tally = if start == 0 { Tally::EMPTY } else { tallies[k] };
                 for &sum in sums {
@@ -272,30 +307,6 @@ fn tile<T: Real, S: Simd>(
                 }
             }
         }
-    }
-}
-
-/// The camera's rays of a pixel.
-#[inline(always)]
-fn look<T: Real>(
-    tracer: &Tracer<'_, T>,
-    camera: &Camera<T>,
-    filter: &Filter,
-    (pixel, [column, row]): (usize, [usize; 2]),
-    samples: Range<u32>,
-    wave: &mut Wave<T>,
-) {
-    let draws = &tracer.draws;
-    let key = draws.key(pixel as u32);
-    let half = T::of(0.5);
-    let (column, row) = (T::of(column as f64) + half, T::of(row as f64) + half);
-    for sample in samples {
-        let sample = sample.wrapping_sub(tracer.options.base);
-        let [x, y] = filter.warp(draws.pair::<T>(key, sample, purpose::PIXEL));
-        let lens = if camera.has_lens() { draws.pair(key, sample, purpose::LENS) } else { [half; 2] };
-        let time =
-            if camera.end.is_some() { draws.pair::<T>(key, sample, purpose::TIME)[0] } else { T::zero() };
-        wave.start(key, sample, camera.ray(column + x, row + y, lens, time));
     }
 }
 

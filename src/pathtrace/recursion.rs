@@ -5,7 +5,7 @@ use super::camera::Camera;
 use super::draws::Draws;
 use super::film::Tally;
 use super::filter::Filter;
-use super::lighting::{Lighting, nearer, weight};
+use super::lighting::{Lighting, weight};
 use super::surface::Spot;
 use super::{Surfaces, leave};
 use crate::accel::{Hit, Ray};
@@ -105,19 +105,18 @@ impl<T: Real> Stage<'_, T> {
     #[inline(always)]
     pub fn beyond(&self, ray: &Ray<T>, hit: &Hit<T>, own: T) -> Option<Vec3<T>> {
         let (origin, direction) = (Vec3::from(ray.origin), Vec3::from(ray.direction));
-        let (mut nearest, mut ambient) = ((hit.t, None), Vec3::splat(T::zero()));
-        for light in self.scene.lights {
-            if let Some(sighting) = light.meet(origin, direction) {
-                let brought = light.shown(origin, &sighting) * weight(own, sighting.pdf);
-                if nearer(sighting.distance, nearest.0, nearest.1.is_some()) {
-                    nearest = (sighting.distance, Some(brought));
-                } else if sighting.distance == T::INFINITY {
-                    ambient = ambient + brought;
-                }
-            }
+        let lights = self.scene.lights;
+        if let Some((k, met)) = self.lighting.standing.nearest(lights, ray, hit.t) {
+            return Some(lights[k].shown(origin, &met) * weight(own, met.pdf));
         }
-        if nearest.1.is_some() || hit.is_hit() {
-            return nearest.1;
+        if hit.is_hit() {
+            return None;
+        }
+        let mut ambient = Vec3::splat(T::zero());
+        for &k in self.lighting.ambient() {
+            if let Some(met) = lights[k as usize].meet(origin, direction) {
+                ambient = ambient + lights[k as usize].shown(origin, &met) * weight(own, met.pdf);
+            }
         }
         Some(match self.scene.environment {
             Some(sky) => {
@@ -154,7 +153,7 @@ impl<T: Real> Stage<'_, T> {
             return none;
         }
         let ray = leave(site.point, site.normal, light.wi, self.scene.offset, light.distance);
-        let hidden = self.lighting.hides(self.scene.lights, &ray, source, self.scene.offset);
+        let hidden = self.lighting.standing.hides(self.scene.lights, &ray, source, self.scene.offset);
         if hidden || self.any_hit(s, &ray) { none } else { value }
     }
 }

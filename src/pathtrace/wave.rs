@@ -113,16 +113,14 @@ impl<T: Real> Wave<T> {
         if self.copies.is_empty() { -1 } else { self.copies[i] }
     }
 
-    /// Adds a path.
+    /// Adds the path of the next slot, whose key and sample are there.
     #[inline(always)]
-    pub fn start(&mut self, key: u32, sample: u32, ray: Ray<T>) {
+    pub fn start(&mut self, ray: Ray<T>) {
         let slot = self.sums.len() as u32;
         let one = Vec3::splat(T::one());
         self.rays.push(ray);
         let normal = Vec3::splat(T::zero());
         self.paths.push(Path { slot, carried: one, pdf: T::INFINITY, scale: T::one(), normal });
-        self.keys.push(key);
-        self.samples.push(sample);
         self.sums.push(Vec3::splat(T::zero()));
     }
 }
@@ -189,9 +187,10 @@ impl<T: Real> Tracer<'_, T> {
             let (ray, hit, path) = (&wave.rays[i], wave.hits[i], wave.paths[i]);
             let (origin, direction) = (Vec3::from(ray.origin), Vec3::from(ray.direction));
             let sum = &mut wave.sums[path.slot as usize];
-            if let Some((source, radiance, pdf)) = scene.light_before(origin, direction, hit.t) {
+            if let Some((source, met)) = self.lighting.standing.nearest(scene.lights, ray, hit.t) {
+                let radiance = scene.lights[source].shown(origin, &met);
                 let share =
-                    self.found(path.pdf, pdf * self.lighting.chance(source, origin, path.normal, before));
+                    self.found(path.pdf, met.pdf * self.lighting.chance(source, origin, path.normal, before));
                 *sum = *sum + path.carried.times(radiance) * share;
             } else if hit.is_hit() {
                 let row = scene.row_of(hit.face as usize, copy);
@@ -220,9 +219,10 @@ impl<T: Real> Tracer<'_, T> {
     #[inline(always)]
     fn beyond(&self, origin: Vec3<T>, direction: Vec3<T>, path: &Path<T>, before: u32) -> Vec3<T> {
         let mut sum = self.scene.background;
-        for (k, light) in self.scene.lights.iter().enumerate() {
+        for &k in self.lighting.ambient() {
+            let light = &self.scene.lights[k as usize];
             if let Light::Ambient { radiance } = light {
-                let chance = self.lighting.chance(k, origin, path.normal, before);
+                let chance = self.lighting.chance(k as usize, origin, path.normal, before);
                 sum = sum + *radiance * self.found(path.pdf, light.pdf(origin, direction) * chance);
             }
         }
@@ -384,10 +384,10 @@ impl<T: Real> Tracer<'_, T> {
         if let Some(copies) = self.scene.copies {
             copies.any_hits(s, &wave.shadow_rays, &mut wave.blocked);
         }
+        let standing = &self.lighting.standing;
         for (i, &(value, slot, source)) in wave.carried.iter().enumerate() {
             let ray = &wave.shadow_rays[i];
-            if !wave.blocked[i]
-                && !self.lighting.hides(self.scene.lights, ray, source as usize, self.scene.offset)
+            if !wave.blocked[i] && !standing.hides(self.scene.lights, ray, source as usize, self.scene.offset)
             {
                 let sum = &mut wave.sums[slot as usize];
                 *sum = *sum + value;
