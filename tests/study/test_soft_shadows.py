@@ -65,6 +65,42 @@ def test_the_mask_holds_penumbrae_and_their_surroundings():
     assert not mask[~inputs.covered].any() and mask.mean() < 0.7
 
 
+def test_leaks_are_what_full_shadow_shows():
+    inputs = soft_shadows._setup(case_of("two depths"))
+    reference = soft_shadows._estimate(inputs, 64, 1, 0, None)
+    whole = inputs.spread(inputs.unshadowed.sum(0))
+    dark = (whole.sum(-1) > 0) & (reference == 0).all(-1)
+    assert dark.mean() > 0.05
+    # A twentieth of what is dim even without shadow is hardly seen either.
+    bright = sl.color.luminance(whole) * inputs.exposure > 0.05**2
+    for value, leak in (
+        (reference, 0.0),
+        (whole, 100.0 * bright[dark].mean()),
+        (0.04 * whole, 0.0),
+        (np.where(dark[..., None], np.nan, 0.0), 100.0),
+        # What leaks where there is some light is another matter.
+        (np.where(dark[..., None], 0.0, whole), 0.0),
+    ):
+        assert soft_shadows._leaks(value, reference, inputs) == pytest.approx(leak, abs=1e-3)
+    assert np.isnan(soft_shadows._leaks(whole, whole, inputs))
+
+
+def test_leaks_stand_case_by_case_in_tables_and_figures(tmp_path):
+    scenes = {name: _shadow_scenes.SCENES[name] for name in ("two depths", "contact")}
+    found = study.run("soft shadows", scenes, techniques=["hard", "variance", "ray_traced"], causes=False, **FAST)
+    leaks = {(r.scene, r.technique, *r.knobs.values()): r.also["leak %"] for r in found.records}
+    for scene in scenes:
+        assert leaks[scene, "hard", 2048] < 2 and leaks[scene, "ray_traced", 64] < 2
+        # The wider a filter of one width, the farther light comes into shadows.
+        assert leaks[scene, "variance", 1024, 2, 4.0, 0.0] < leaks[scene, "variance", 1024, 2, 16.0, 0.0]
+    # And what little there is of it counts as none.
+    assert leaks["contact", "variance", 1024, 2, 16.0, 0.2] < 0.7 * leaks["contact", "variance", 1024, 2, 16.0, 0.0]
+    rows = found.to_csv(tmp_path / "figures.csv").read_text().splitlines()
+    at = rows[0].split(",").index("leak %")
+    assert [float(r.split(",")[at]) for r in rows[1:]] == pytest.approx([r.also["leak %"] for r in found.records])
+    assert "leak %" in found.by_case() and "full shadow" in found.also["leak %"]
+
+
 def test_masks_widen_by_a_square():
     mask = np.zeros((7, 9), bool)
     mask[3, 0] = True

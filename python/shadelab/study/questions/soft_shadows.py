@@ -37,6 +37,11 @@ _FLOOR = 0.05
 terminator a relative error is large and means nothing."""
 
 
+_LEAK, _HARDLY = 0.05, 1e-3
+"""What is in full shadow and shows more than this share of the unshadowed light leaks: less is hardly seen. If no more
+than that share of a picture is in full shadow, there is no telling."""
+
+
 @dataclass(frozen=True, eq=False)
 class Inputs:
     """What reference and candidates are given: the G-buffer at pixel centres, and the scene to cast shadows.
@@ -284,6 +289,21 @@ def _flip(value: Array, reference: Array, inputs: Inputs) -> Array | float:
         return math.nan
 
 
+def _leaks(value: Array, reference: Array, inputs: Inputs) -> float:
+    """Light leaks: how many per cent of the pixels in full shadow show more than a twentieth of the unshadowed light.
+
+    In full shadow is what faces a light of which no sample of the reference sees any; no figure where hardly anything
+    is (a thousandth of the picture).
+    """
+    dark = inputs.spread(inputs.unshadowed.sum(0)).sum(-1) > 0
+    dark &= (reference == 0).all(-1)
+    if dark.sum() < max(1, _HARDLY * dark.size):
+        return math.nan
+    shown = _residual(value, np.zeros_like(reference), inputs)[dark]
+    # What is not finite is no shadow either.
+    return 100.0 * float(np.mean(~(shown <= _LEAK)))
+
+
 def _rmse(value: Array, reference: Array, inputs: Inputs) -> float:
     """Root mean square error of radiance over the whole frame, background included, in W/(m² sr)."""
     return image.rmse(value, reference)
@@ -428,7 +448,7 @@ def question() -> Question:
         views,
         _setup,
         _compose,
-        {"FLIP": _flip, "rmse": _rmse},
+        {"leak %": _leaks, "FLIP": _flip, "rmse": _rmse},
         _display,
         lambda case: renderer.plan(case.scene, size=case.size),
         size=(480, 270),
