@@ -71,9 +71,23 @@ impl<'a, T: Real, E: Stored, const C: usize> Filtered<'a, T, E, C> {
     }
 
     /// The means, as powers whatever they are stored as, over boxes about (x, y) of the given half sides, all in texels
-    /// of the depth map; of those receivers whose bit is set.
-    #[inline(always)]
+    /// of the depth map; of those receivers whose bit is set. Enters the level anew: compiled once for all lookups.
+    #[inline(never)]
     pub fn means<S: Simd>(
+        &self,
+        s: S,
+        live: u64,
+        at: (T::V8<S>, T::V8<S>),
+        half: [T::V8<S>; 2],
+    ) -> [T::V8<S>; 4] {
+        s.vectorize(
+            #[inline(always)]
+            || self.means_here(s, live, at, half),
+        )
+    }
+
+    #[inline(always)]
+    fn means_here<S: Simd>(
         &self,
         s: S,
         live: u64,
@@ -206,9 +220,13 @@ impl<'a, T: Real, E: Stored, const C: usize> Filtered<'a, T, E, C> {
             if live >> k & 1 == 0 {
                 continue;
             }
-            let (left, right) = (left.of(k), right.of(k));
-            let upper = self.difference(top.of(k), left, right);
-            let lower = self.difference(bottom.of(k), left, right);
+            let last = [size.width - 2, size.height - 2];
+            let (left, right) = (left.of(k, last[0]), right.of(k, last[0]));
+            // SAFETY: no node lies beyond the last but one of a row or a column.
+            let (upper, lower) = unsafe {
+                let upper = self.difference(top.of(k, last[1]), left, right);
+                (upper, self.difference(bottom.of(k, last[1]), left, right))
+            };
             for c in 0..C {
                 out[k][c] = T::of((lower[c] - upper[c]) * per.as_slice()[k]);
             }
@@ -217,14 +235,19 @@ impl<'a, T: Real, E: Stored, const C: usize> Filtered<'a, T, E, C> {
     }
 
     /// The table at `right` less that at `left`, both between two rows. In double, whatever is stored.
+    ///
+    /// # Safety
+    /// A node of a row or a column must lie before its last.
     #[inline(always)]
-    fn difference(&self, row: (usize, f64), left: (usize, f64), right: (usize, f64)) -> [f64; C] {
+    unsafe fn difference(&self, row: (usize, f64), left: (usize, f64), right: (usize, f64)) -> [f64; C] {
         let width = self.levels[0].level.width;
         let mut out = [0.0; C];
         for (j, share) in [(row.0, 1.0 - row.1), (row.0 + 1, row.1)] {
-            let at = j * width;
-            let (a, b) = (self.values[at + left.0], self.values[at + left.0 + 1]);
-            let (c, d) = (self.values[at + right.0], self.values[at + right.0 + 1]);
+            // SAFETY: of a table as high and as wide as its level, which `new` found to fit.
+            let (a, b, c, d) = unsafe {
+                let at = self.values.as_ptr().add(j * width);
+                (*at.add(left.0), *at.add(left.0 + 1), *at.add(right.0), *at.add(right.0 + 1))
+            };
             for k in 0..C {
                 let (a, b, c, d): (f64, f64, f64, f64) = (a[k].real(), b[k].real(), c[k].real(), d[k].real());
                 out[k] += ((c + (d - c) * right.1) - (a + (b - a) * left.1)) * share;
@@ -251,12 +274,13 @@ struct Nodes<V> {
 }
 
 impl<V> Nodes<V> {
+    /// Of one receiver, and `last` at most: what is no number has any index.
     #[inline(always)]
-    fn of<S: Simd>(&self, k: usize) -> (usize, f64)
+    fn of<S: Simd>(&self, k: usize, last: usize) -> (usize, f64)
     where
         V: SimdFloat<S, Element = f64>,
     {
-        (self.low[k] as usize, self.share.as_slice()[k])
+        ((self.low[k] as usize).min(last), self.share.as_slice()[k])
     }
 }
 

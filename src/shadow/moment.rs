@@ -86,14 +86,15 @@ fn roots<V: Lanes>(b: [V; 4], t: V) -> [V; 2] {
     // B = L D Lᵀ, with d1 the variance, d2 what is left of the variance of the square.
     let tiny = t.like(V::Elem::EPSILON * V::Elem::EPSILON);
     let d1 = (b[1] - b[0] * b[0]).max(tiny);
-    let l = (b[2] - b[0] * b[1]) / d1;
+    let per = one / d1;
+    let l = (b[2] - b[0] * b[1]) * per;
     let d2 = (b[3] - b[1] * b[1] - l * l * d1).max(tiny);
     // c = B⁻¹ (1, t, t²).
     let y1 = t - b[0];
     let y2 = t * t - b[1] - l * y1;
     // Scaled by d2, which leaves the roots as they are.
     let c2 = y2;
-    let c1 = y1 * (d2 / d1) - l * c2;
+    let c1 = y1 * (d2 * per) - l * c2;
     let c0 = d2 - b[0] * c1 - b[1] * c2;
     let half = t.num(0.5) * c1;
     let root = (half * half - c0 * c2).max(t.num(0.0)).sqrt();

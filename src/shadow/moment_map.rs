@@ -12,6 +12,8 @@ use crate::dispatch;
 use crate::math;
 use crate::parallel::{self, Interrupted, Rows, Watch};
 use crate::real::{Lanes, Real};
+use crate::shadow::anchor::all;
+use crate::simd::*;
 
 /// What is averaged, of a depth z.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -35,17 +37,17 @@ impl<T: Real> Basis<T> {
     }
 
     #[inline(always)]
-    pub fn of(self, z: T) -> [T; 4] {
-        let zero = T::zero();
+    pub fn of<V: Lanes<Elem = T>>(self, z: V) -> [V; 4] {
+        let zero = z.num(0.0);
         match self {
             Basis::Powers2 => [z, z * z, zero, zero],
             Basis::Powers4 => [z, z * z, z * z * z, (z * z) * (z * z)],
             Basis::Exponential(a) => {
-                let e = math::exp(a * z);
+                let e = math::exp(z * z.like(a));
                 [e, e * e, zero, zero]
             }
             Basis::Exponentials(a, b) => {
-                let (e, f) = (math::exp(a * z), -math::exp(-b * z));
+                let (e, f) = (math::exp(z * z.like(a)), -math::exp(z * z.like(-b)));
                 [e, e * e, f, f * f]
             }
         }
@@ -88,43 +90,68 @@ pub fn moment_map<T: Real>(
     assert!(depth.len() == width * height && out.len() == row * height.div_ceil(reduce), "sizes");
     let band = ((1 << 17) / (width * reduce)).max(1);
     parallel::for_each(watch, Rows { data: out, width: row }, band, |first, out| {
-        dispatch!(_s => for (i, out) in out.data.chunks_exact_mut(row).enumerate() {
+        let mut columns = vec![T::zero(); channels * width];
+        dispatch!(s => for (i, out) in out.data.chunks_exact_mut(row).enumerate() {
             let y = (first + i) * reduce;
             let rows = &depth[y * width..(y + reduce).min(height) * width];
             if channels == 2 {
-                means::<T, 2>(rows, width, reduce, warp, basis, out);
+                means::<T, _, 2>(s, rows, width, reduce, warp, basis, &mut columns, out);
             } else {
-                means::<T, 4>(rows, width, reduce, warp, basis, out);
+                means::<T, _, 4>(s, rows, width, reduce, warp, basis, &mut columns, out);
             }
         });
     })
 }
 
-/// One row of the result from the rows that it covers.
+/// One row of the result from the rows that it covers: sums of each column, in a plane of `columns` a channel, then of
+/// each square.
 #[inline(always)]
-fn means<T: Real, const C: usize>(
+fn means<T: Real, S: Simd, const C: usize>(
+    s: S,
     rows: &[T],
     width: usize,
     reduce: usize,
     warp: Warp<T>,
     basis: Basis<T>,
+    columns: &mut [T],
     out: &mut [T],
 ) {
     let high = rows.len() / width;
-    for x in 0..out.len() / C {
-        let (first, end) = (x * reduce, (x * reduce + reduce).min(width));
-        let mut sums = [T::zero(); C];
+    let whole = width / 8 * 8;
+    for x in (0..whole).step_by(8) {
+        let mut sums = [all::<T, S>(s, T::zero()); C];
         for y in 0..high {
-            for i in first..end {
-                let b = basis.of(warp.of(rows[y * width + i]));
-                for c in 0..C {
-                    sums[c] += b[c];
-                }
+            let at = y * width + x;
+            let b = basis.of(warp.of(<T::V8<S> as SimdBase<S>>::from_slice(s, &rows[at..at + 8])));
+            for c in 0..C {
+                sums[c] += b[c];
             }
         }
+        for c in 0..C {
+            sums[c].store_slice(&mut columns[c * width + x..][..8]);
+        }
+    }
+    for x in whole..width {
+        let mut sums = [T::zero(); C];
+        for y in 0..high {
+            let b = basis.of(warp.of(rows[y * width + x]));
+            for c in 0..C {
+                sums[c] += b[c];
+            }
+        }
+        for c in 0..C {
+            columns[c * width + x] = sums[c];
+        }
+    }
+    for x in 0..out.len() / C {
+        let (first, end) = (x * reduce, (x * reduce + reduce).min(width));
         let share = T::one() / T::of((high * (end - first)) as f64);
         for c in 0..C {
-            out[x * C + c] = sums[c] * share;
+            let mut sum = T::zero();
+            for i in first..end {
+                sum += columns[c * width + i];
+            }
+            out[x * C + c] = sum * share;
         }
     }
 }

@@ -35,12 +35,18 @@ pub struct Granted<T> {
 
 impl<T: Real> Test<T> {
     /// The most of the light that receivers at `t` may see, and the mean of the blockers' depths (t without any).
-    /// Enters the level anew: this is compiled once for all formats of moments.
+    /// Enters the level anew: this is compiled once for all formats of moments. Two lots at a time: a bound is a chain of
+    /// divisions and a root, each of which waits for the one before, and the other lot's fill the wait.
     #[inline(never)]
-    pub fn blockers<S: Simd>(&self, s: S, m: [T::V8<S>; 4], t: T::V8<S>) -> (T::V8<S>, T::V8<S>) {
+    pub fn blockers<S: Simd>(
+        &self,
+        s: S,
+        m: &[[T::V8<S>; 4]; PAIR],
+        t: &[T::V8<S>; PAIR],
+    ) -> [(T::V8<S>, T::V8<S>); PAIR] {
         s.vectorize(
             #[inline(always)]
-            || self.blockers_here(s, m, t),
+            || [self.blockers_here(s, m[0], t[0]), self.blockers_here(s, m[1], t[1])],
         )
     }
 
@@ -98,29 +104,73 @@ pub struct Found<V> {
     pub t: V,
 }
 
+/// Lots that are looked up together.
+pub const PAIR: usize = 2;
+
+/// Where a lot of receivers falls.
+#[derive(Clone, Copy)]
+pub struct Placed<V> {
+    pub feet: Feet<V>,
+    /// How much depth the receivers' planes gain over a texel across and one down.
+    pub gain: [V; 2],
+    /// A bit for each that looks into this map, and for each of these that lies on it.
+    pub asked: u64,
+    pub live: u64,
+}
+
 /// The lookups at places of the map, over boxes of half sides in texels; of receivers whose bit is set.
 #[inline(always)]
 pub fn tested<T: Real, E: Stored, S: Simd, const C: usize>(
     s: S,
-    live: u64,
     filtered: &Filtered<'_, T, E, C>,
     test: &Test<T>,
     granted: &Granted<T>,
-    feet: &Feet<T::V8<S>>,
-    gain: [T::V8<S>; 2],
-    half: [T::V8<S>; 2],
-) -> Found<T::V8<S>> {
-    let moments = filtered.means(s, live, (feet.x, feet.y), half);
-    let slope = all::<T, S>(s, granted.slope) * (gain[0] * half[0] + gain[1] * half[1]);
-    let t = filtered.warp.of(feet.depth - (feet.rounding + all::<T, S>(s, granted.constant) + slope));
-    let (lit, blocker) = test.blockers(s, moments, t);
-    Found { lit, blocker, moments, t }
+    lots: &[Placed<T::V8<S>>; PAIR],
+    half: [[T::V8<S>; 2]; PAIR],
+) -> [Found<T::V8<S>>; PAIR] {
+    let none = all::<T, S>(s, T::zero());
+    let (mut moments, mut t) = ([[none; 4]; PAIR], [none; PAIR]);
+    for j in 0..PAIR {
+        let Placed { feet, gain, live, .. } = &lots[j];
+        if *live == 0 {
+            continue;
+        }
+        moments[j] = filtered.means(s, *live, (feet.x, feet.y), half[j]);
+        let slope = all::<T, S>(s, granted.slope) * (gain[0] * half[j][0] + gain[1] * half[j][1]);
+        t[j] = filtered.warp.of(feet.depth - (feet.rounding + all::<T, S>(s, granted.constant) + slope));
+    }
+    let [first, second] = test.blockers(s, &moments, &t);
+    [
+        Found { lit: first.0, blocker: first.1, moments: moments[0], t: t[0] },
+        Found { lit: second.0, blocker: second.1, moments: moments[1], t: t[1] },
+    ]
 }
 
-/// Of a lot of receivers from `i` on, of which those `asked` look into this map: where they fall, how much depth they
-/// gain over a texel, and a bit for each that lies on the map. Enters the level anew, as [`Test::blockers`].
+/// The lots from the `i`th receiver of a chunk on, whose own first is the `first` of all. Beyond the last nobody asks.
+#[inline(always)]
+pub fn pair<T: Real, S: Simd>(
+    s: S,
+    map: &Map<'_, T>,
+    perspective: bool,
+    points: &[[T; 3]],
+    normals: Option<&[[T; 3]]>,
+    first: usize,
+    i: usize,
+    normal_offset: T,
+) -> [Placed<T::V8<S>>; PAIR] {
+    let (next, n) = (i + LOT, points.len());
+    let asked =
+        [map.asks(first + i, LOT.min(n - i)), map.asks(first + next, LOT.min(n.saturating_sub(next)))];
+    [
+        placed(s, map, perspective, points, normals, i, asked[0], normal_offset),
+        placed(s, map, perspective, points, normals, next.min(n - 1), asked[1], normal_offset),
+    ]
+}
+
+/// A lot of receivers from `i` on, of which those `asked` look into this map. Enters the level anew, as
+/// [`Test::blockers`].
 #[inline(never)]
-pub fn placed<T: Real, S: Simd>(
+fn placed<T: Real, S: Simd>(
     s: S,
     map: &Map<'_, T>,
     perspective: bool,
@@ -129,7 +179,7 @@ pub fn placed<T: Real, S: Simd>(
     i: usize,
     asked: u64,
     normal_offset: T,
-) -> (Feet<T::V8<S>>, [T::V8<S>; 2], u64) {
+) -> Placed<T::V8<S>> {
     s.vectorize(
         #[inline(always)]
         || placed_here(s, map, perspective, points, normals, i, asked, normal_offset),
@@ -146,7 +196,7 @@ fn placed_here<T: Real, S: Simd>(
     i: usize,
     asked: u64,
     normal_offset: T,
-) -> (Feet<T::V8<S>>, [T::V8<S>; 2], u64) {
+) -> Placed<T::V8<S>> {
     let (feet, gain) = if perspective {
         let feet = map.feet::<S, true>(s, points, normals, i, normal_offset);
         (feet, feet.gain::<true>())
@@ -160,7 +210,7 @@ fn placed_here<T: Real, S: Simd>(
             live &= !(1 << k);
         }
     }
-    (feet, gain, live)
+    Placed { feet, gain, asked, live }
 }
 
 /// The lit fraction of every receiver; with `more`, the moments (as many as `C`) and the depth asked about. `half` is
@@ -183,24 +233,26 @@ pub fn lookup<T: Real, E: Stored, const C: usize>(
             let (half, nan) = (all::<T, _>(s, half), all::<T, _>(s, T::NAN));
             let mut i = 0;
             while i < out.len() {
-                let asked = map.asks(first + i, LOT.min(out.len() - i));
-                let (feet, gain, live) = placed(s, map, perspective, p, n, i, asked, granted.normal_offset);
-                let found = tested(s, live, filtered, test, granted, &feet, gain, [half; 2]);
-                let here = mask::<T, _>(s, live);
-                let lit = without_bleeding(found.lit, all::<T, _>(s, granted.bleeding));
-                put::<T, _>(out, i, asked, here.select(lit, feet.answer));
-                if let Some((moments, t)) = &mut more {
-                    for c in 0..C {
-                        let m = here.select(found.moments[c], nan);
-                        for k in 0..LOT {
-                            if asked >> k & 1 == 1 {
-                                moments[i + k][c] = m.as_slice()[k];
+                let lots = pair(s, map, perspective, p, n, first, i, granted.normal_offset);
+                let found = tested(s, filtered, test, granted, &lots, [[half; 2]; PAIR]);
+                for j in 0..PAIR {
+                    let (asked, i) = (lots[j].asked, i + j * LOT);
+                    let here = mask::<T, _>(s, lots[j].live);
+                    let lit = without_bleeding(found[j].lit, all::<T, _>(s, granted.bleeding));
+                    put::<T, _>(out, i, asked, here.select(lit, lots[j].feet.answer));
+                    if let Some((moments, t)) = &mut more {
+                        for c in 0..C {
+                            let m = here.select(found[j].moments[c], nan);
+                            for k in 0..LOT {
+                                if asked >> k & 1 == 1 {
+                                    moments[i + k][c] = m.as_slice()[k];
+                                }
                             }
                         }
+                        put::<T, _>(t, i, asked, here.select(found[j].t, nan));
                     }
-                    put::<T, _>(t, i, asked, here.select(found.t, nan));
                 }
-                i += LOT;
+                i += PAIR * LOT;
             }
         })
     })

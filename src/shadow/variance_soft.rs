@@ -16,7 +16,7 @@ use crate::shadow::anchor::{all, light_image, mask, put};
 use crate::shadow::filtered::Filtered;
 use crate::shadow::lookup::{LOT, Map};
 use crate::shadow::moment_map::Stored;
-use crate::shadow::tested::{Granted, Test, placed, tested};
+use crate::shadow::tested::{Granted, PAIR, Placed, Test, pair, tested};
 use crate::shadow::variance::without_bleeding;
 use crate::simd::*;
 
@@ -56,15 +56,18 @@ pub fn variance_soft<T: Real, E: Stored, const C: usize>(
         dispatch!(s => {
             let mut i = 0;
             while i < out.len() {
-                let asked = map.asks(first + i, LOT.min(out.len() - i));
-                let found = lot(s, map, perspective, filtered, p, n, i, asked, test, granted, &light);
-                put::<T, _>(out, i, asked, found.lit);
-                if let Some((blocker, penumbra, search)) = &mut more {
-                    put::<T, _>(blocker, i, asked, found.blocker);
-                    put::<T, _>(penumbra, i, asked, found.penumbra);
-                    put::<T, _>(search, i, asked, found.search);
+                let lots = pair(s, map, perspective, p, n, first, i, granted.normal_offset);
+                let found = both(s, map, perspective, filtered, &lots, test, granted, &light);
+                for j in 0..PAIR {
+                    let (asked, i) = (lots[j].asked, i + j * LOT);
+                    put::<T, _>(out, i, asked, found[j].lit);
+                    if let Some((blocker, penumbra, search)) = &mut more {
+                        put::<T, _>(blocker, i, asked, found[j].blocker);
+                        put::<T, _>(penumbra, i, asked, found[j].penumbra);
+                        put::<T, _>(search, i, asked, found[j].search);
+                    }
                 }
-                i += LOT;
+                i += PAIR * LOT;
             }
         })
     })
@@ -75,55 +78,71 @@ struct Light<T> {
     search_slope: T,
 }
 
+/// Half the region, in texels, over which blockers at a depth hide the light.
 #[inline(always)]
-fn lot<T: Real, E: Stored, S: Simd, const C: usize>(
+fn seen<T: Real, S: Simd>(
+    s: S,
+    map: &Map<'_, T>,
+    perspective: bool,
+    light: &Light<T>,
+    depth: T::V8<S>,
+    blocker: T::V8<S>,
+) -> [T::V8<S>; 2] {
+    if perspective {
+        light_image::<T, S, true>(s, map, depth, light.sides, blocker)
+    } else {
+        light_image::<T, S, false>(s, map, depth, light.sides, blocker)
+    }
+}
+
+/// Two lots, at each step together: see [`Test::blockers`].
+#[inline(always)]
+fn both<T: Real, E: Stored, S: Simd, const C: usize>(
     s: S,
     map: &Map<'_, T>,
     perspective: bool,
     filtered: &Filtered<'_, T, E, C>,
-    points: &[[T; 3]],
-    normals: Option<&[[T; 3]]>,
-    i: usize,
-    asked: u64,
+    lots: &[Placed<T::V8<S>>; PAIR],
     test: &Test<T>,
     granted: &Granted<T>,
     light: &Light<T>,
-) -> Soft<T::V8<S>> {
+) -> [Soft<T::V8<S>>; PAIR] {
     let (zero, one, nan) = (all::<T, S>(s, T::zero()), all::<T, S>(s, T::one()), all::<T, S>(s, T::NAN));
-    let (feet, gain, live) = placed(s, map, perspective, points, normals, i, asked, granted.normal_offset);
     let near = all::<T, S>(s, map.near);
-    let half = if perspective {
-        light_image::<T, S, true>(s, map, feet.depth, light.sides, near)
-    } else {
-        light_image::<T, S, false>(s, map, feet.depth, light.sides, near)
-    };
-    let here = mask::<T, S>(s, live);
-    let nothing = feet.answer.simd_eq(feet.answer).select(zero, nan);
-    let search = here.select(Lanes::max(half[0], half[1]), nothing);
-
+    let half = [
+        seen(s, map, perspective, light, lots[0].feet.depth, near),
+        seen(s, map, perspective, light, lots[1].feet.depth, near),
+    ];
     let searched = Granted { slope: light.search_slope, ..*granted };
-    let first = tested(s, live, filtered, test, &searched, &feet, gain, half);
-    // NaN goes on.
-    let lit = first.lit.simd_gt(all::<T, S>(s, T::of(1.0 - NONE)));
-    let live = live & !lit.to_bitmask();
-    if live == 0 {
-        return Soft { lit: here.select(one, feet.answer), blocker: nan, penumbra: nothing, search };
+    let first = tested(s, filtered, test, &searched, lots, half);
+
+    let mut found = [Soft { lit: one, blocker: nan, penumbra: nan, search: nan }; PAIR];
+    let (mut shaded, mut half) = (*lots, half);
+    for j in 0..PAIR {
+        let (feet, here) = (&lots[j].feet, mask::<T, S>(s, lots[j].live));
+        let nothing = feet.answer.simd_eq(feet.answer).select(zero, nan);
+        // NaN goes on.
+        let lit = first[j].lit.simd_gt(all::<T, S>(s, T::of(1.0 - NONE)));
+        shaded[j].live &= !lit.to_bitmask();
+        let blocker = Lanes::min(Lanes::max(filtered.warp.back(first[j].blocker), near), feet.depth);
+        let ratio = if perspective { (feet.depth - blocker) / blocker } else { feet.depth - blocker };
+        let penumbra = Lanes::max(ratio, zero) * all::<T, S>(s, light.sides[0].max(light.sides[1]));
+        let shade = mask::<T, S>(s, shaded[j].live);
+        found[j] = Soft {
+            lit: here.select(one, feet.answer),
+            blocker: shade.select(blocker, nan),
+            penumbra: shade.select(penumbra, nothing),
+            search: here.select(Lanes::max(half[j][0], half[j][1]), nothing),
+        };
+        half[j] = seen(s, map, perspective, light, feet.depth, blocker);
     }
-    let blocker = Lanes::min(Lanes::max(filtered.warp.back(first.blocker), near), feet.depth);
-    let ratio = if perspective { (feet.depth - blocker) / blocker } else { feet.depth - blocker };
-    let penumbra = Lanes::max(ratio, zero) * all::<T, S>(s, light.sides[0].max(light.sides[1]));
-    let half = if perspective {
-        light_image::<T, S, true>(s, map, feet.depth, light.sides, blocker)
-    } else {
-        light_image::<T, S, false>(s, map, feet.depth, light.sides, blocker)
-    };
-    let second = tested(s, live, filtered, test, granted, &feet, gain, half);
-    let shaded = mask::<T, S>(s, live);
-    let second = without_bleeding(second.lit, all::<T, S>(s, granted.bleeding));
-    Soft {
-        lit: shaded.select(second, here.select(one, feet.answer)),
-        blocker: shaded.select(blocker, nan),
-        penumbra: shaded.select(penumbra, nothing),
-        search,
+    if shaded[0].live | shaded[1].live == 0 {
+        return found;
     }
+    let second = tested(s, filtered, test, granted, &shaded, half);
+    for j in 0..PAIR {
+        let lit = without_bleeding(second[j].lit, all::<T, S>(s, granted.bleeding));
+        found[j].lit = mask::<T, S>(s, shaded[j].live).select(lit, found[j].lit);
+    }
+    found
 }
