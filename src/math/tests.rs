@@ -5,6 +5,7 @@ use super::*;
 use crate::dispatch;
 use crate::real::Real;
 use crate::simd::{self, SimdBase};
+use std::f64::consts::PI;
 
 /// Distance in units of the last place of `exact` in single precision, subnormal results included.
 fn ulps32(got: f32, exact: f64) -> f64 {
@@ -130,6 +131,26 @@ fn pow_and_atan2_keep_their_ulps() {
         let (x, y) = (random.between(0.0, 10.0), random.between(-300.0, 300.0));
         assert!(ulps64(pow(x, y), x.powf(y)) <= 3.0, "pow({x:e}, {y:e})");
     }
+}
+
+#[test]
+fn angle_is_atan2_of_the_upper_half_plane() {
+    let mut random = Random(4);
+    for _ in 0..500_000 {
+        let scale = 2f64.powi((random.bits() % 120) as i32 - 60);
+        let (y, x) = (random.between(0.0, scale), random.between(-1.0, 1.0) * random.between(0.0, scale));
+        // Our own two ulps, and at most one of std.
+        let u = ulps64(angle(y, x), y.atan2(x));
+        assert!(u <= 3.0, "angle({y:e}, {x:e}): {u} ulps");
+        let (y, x) = (y as f32, x as f32);
+        let u = ulps32(angle(y, x), (y as f64).atan2(x as f64));
+        assert!(u <= 2.0, "angle({y:e}, {x:e}): {u} ulps");
+    }
+    assert_eq!(
+        [angle(0.0, 1.0), angle(0.0, -1.0), angle(2.0, 0.0), angle(2.0, -0.0)],
+        [0.0, PI, PI / 2.0, PI / 2.0]
+    );
+    assert!(angle(0.0f64, 0.0).is_nan() && angle(f64::NAN, 1.0).is_nan() && angle(1.0, f64::NAN).is_nan());
 }
 
 fn special_cases<T: Real>() {

@@ -32,6 +32,7 @@ pub struct Copies<'a, T> {
 }
 
 /// Whether an affine matrix turns right into left.
+#[cfg_attr(not(feature = "python"), allow(dead_code))] // asked for by Python alone
 pub fn mirrors(m: &Affine) -> bool {
     let [x, y, z] = [m[0], m[1], m[2]].map(|r| Vec3::new(r[0], r[1], r[2]));
     x.cross(y).dot(z) < 0.0

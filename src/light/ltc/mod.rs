@@ -107,7 +107,8 @@ pub fn diffuse_picture<T: Real>(
 #[inline(always)]
 fn towards(frame: &Frame<f64>, wo: Vec3<f64>) -> Frame<f64> {
     let across = (wo.x * wo.x + wo.y * wo.y).sqrt();
-    let (cos, sin) = if across > 0.0 { (wo.x / across, wo.y / across) } else { (1.0, 0.0) };
+    let per = 1.0 / across;
+    let (cos, sin) = if across > 0.0 { (wo.x * per, wo.y * per) } else { (1.0, 0.0) };
     Frame { x: frame.x * cos + frame.y * sin, y: frame.y * cos - frame.x * sin, z: frame.z }
 }
 

@@ -1,6 +1,6 @@
 //! How much of each lobe of a pair a polygon fills: Lambert's formula over the polygon straightened, eight edges at once.
 //!
-//! An edge from a to b contributes its normal times its angle, atan2(|a × b|, a · b), whatever the lengths of a and b, so
+//! An edge from a to b contributes its normal times its angle, that of |a × b| and a · b, whatever the lengths of a and b, so
 //! that nothing is normalised. A quadrilateral above both horizons, by far the most frequent, is four edges under
 //! two lobes: one pass of eight lanes. What crosses a horizon is clipped there, exactly, and goes lobe by lobe.
 
@@ -37,8 +37,9 @@ fn turns<S: Simd>(s: S, a: Vec3<f64x8<S>>, b: Vec3<f64x8<S>>) -> [[f64; WIDE]; 3
     let zero = f64x8::splat(s, 0.0);
     let normal = a.cross(b);
     let sine = normal.dot(normal).sqrt();
-    let angle = math::atan2(sine, a.dot(b));
-    let v = normal * <f64x8<S> as Lanes>::select(zero.less(sine), angle / sine, zero);
+    // The reciprocal does not wait for the angle.
+    let (angle, per) = (math::angle(sine, a.dot(b)), f64x8::splat(s, 1.0) / sine);
+    let v = normal * <f64x8<S> as Lanes>::select(zero.less(sine), angle * per, zero);
     [v.x.to_array(), v.y.to_array(), v.z.to_array()]
 }
 

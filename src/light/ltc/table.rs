@@ -81,10 +81,11 @@ impl Lobe {
     /// From what is above the horizon.
     #[inline(always)]
     fn new(inverse: [f64; 4], magnitude: f64, grazing: f64) -> Self {
-        let mut lobe = Lobe { inverse, magnitude, grazing };
-        let whole = 1.0 / lobe.above();
-        (lobe.magnitude, lobe.grazing) = (magnitude * whole, grazing * whole);
-        lobe
+        // One over `above`, by one division.
+        let [xx, _, zx, _] = inverse;
+        let length = (xx * xx + zx * zx).sqrt();
+        let whole = 2.0 * length / (length + xx);
+        Lobe { inverse, magnitude: magnitude * whole, grazing: grazing * whole }
     }
 
     #[inline(always)]
