@@ -26,6 +26,7 @@ __all__ = [
     "array",
     "broadcast",
     "choice",
+    "coarse_step",
     "count",
     "elementwise",
     "flag",
@@ -311,13 +312,18 @@ def precision(name: str, value: Any) -> np.dtype[Any]:
     return dtype
 
 
-def warn_if_coarse(positions: NDArray[Any], dtype: DTypeLike, level: int) -> None:
-    """Warns at the caller's line if points are so far from the origin that a precision loses their shape."""
+def coarse_step(positions: NDArray[Any], dtype: DTypeLike) -> float:
+    """The steps of a precision at points so far from the origin that it loses their shape; zero if it does not."""
     if not positions.size:
-        return
+        return 0.0
     low, high = positions.min(0).astype(np.float64), positions.max(0).astype(np.float64)
     step = float(np.finfo(np.dtype(dtype)).eps) * float(np.maximum(np.abs(low), np.abs(high)).max())
-    if step > 1e-3 * float((high - low).max()):
+    return step if step > 1e-3 * float((high - low).max()) else 0.0
+
+
+def warn_if_coarse(positions: NDArray[Any], dtype: DTypeLike, level: int) -> None:
+    """Warns at the caller's line if points are so far from the origin that a precision loses their shape."""
+    if step := coarse_step(positions, dtype):
         text = f"scene: {np.dtype(dtype)} loses its shape so far from the origin (steps of {step:.2g}); move it there"
         warnings.warn(text, RuntimeWarning, stacklevel=level)
 

@@ -140,22 +140,34 @@ impl<T: Real> Standing<T> {
 
     #[inline(never)]
     fn hides_from(&self, lights: &[Light<T>], ray: &Ray<T>, source: usize, offset: T) -> bool {
-        let mut near = ray.t_max;
-        if near.is_finite() {
-            near = near + (offset + offset) + T::of(ROUNDING) * T::EPSILON * near;
+        let asked = lights.get(source);
+        // Where the ray meets the source itself, since distances drawn and met differ at the rim of a sphere.
+        let (mut end, mut slack) = (ray.t_max, offset + offset);
+        if let Some(met) = asked.and_then(
+            #[inline(always)]
+            |light| light.meet(ray.origin.into(), ray.direction.into()),
+        ) {
+            (end, slack) = (met.distance, T::zero());
         }
+        // In front of the source, or in its place.
+        let (mut front, mut place) = (end, end);
+        if end.is_finite() {
+            slack += T::of(ROUNDING) * T::EPSILON * end;
+            (front, place) = (end - slack, end + slack);
+        }
+        let stands = asked.is_none_or(Light::stands);
         let mut hidden = false;
         self.each(
             ray,
-            near,
+            place,
             #[inline(always)]
             |k, end| {
                 if hidden || k == source {
                     return end;
                 }
+                let limit = if k < source && stands { place } else { front };
                 if let Some(sighting) = lights[k].meet(ray.origin.into(), ray.direction.into())
-                    && sighting.distance < near
-                    && before(sighting.distance, k, lights, ray, source, offset)
+                    && sighting.distance < limit
                 {
                     hidden = true;
                     // Nothing is left to visit.
@@ -209,29 +221,6 @@ fn passes<T: Real>(of: &Box3<T>, origin: &[T; 3], inverse: &[T; 3], end: T) -> b
     // Wider by the rounding of the planes' distances.
     let wide = T::of(1.0 + 8.0 * T::EPSILON.to_f64());
     !(entry > exit * wide)
-}
-
-/// Whether light `k`, met at a distance about the source's or nearer, comes before the source: by where the ray meets that.
-#[inline(never)]
-fn before<T: Real>(
-    distance: T,
-    k: usize,
-    lights: &[Light<T>],
-    ray: &Ray<T>,
-    source: usize,
-    offset: T,
-) -> bool {
-    let asked = lights.get(source);
-    let (mut end, mut slack) = (ray.t_max, offset + offset);
-    if let Some(met) = asked.and_then(|light| light.meet(ray.origin.into(), ray.direction.into())) {
-        (end, slack) = (met.distance, T::zero());
-    }
-    if !end.is_finite() {
-        return distance < end;
-    }
-    slack += T::of(ROUNDING) * T::EPSILON * end;
-    let later = k < source && asked.is_none_or(Light::stands);
-    distance < if later { end + slack } else { end - slack }
 }
 
 #[cfg(test)]

@@ -15,6 +15,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from .. import _arrays, light
+from .._arrays import Floats
 from ..accel import BVH
 from ._common import check_bvh, surface_offset
 from ._copies import Copies, Sharing, shareable
@@ -38,7 +39,7 @@ class Moment(NamedTuple):
 
 
 class _Made:
-    """A scene at time 0: copies, what is flattened (all but these) and its hierarchy."""
+    """A scene at time 0: copies, what is flattened (all but these), and what is known of that."""
 
     def __init__(self, scene: Scene, shared: list[int], dtype: np.dtype[Any]) -> None:
         # No reference to the scene itself, which may go.
@@ -49,15 +50,55 @@ class _Made:
     def bvh(self) -> BVH:
         return BVH(self.arrays.positions, self.arrays.faces)
 
+    @cached_property
+    def tables(self) -> Tables:
+        return _tables(self.copies, self.arrays)
+
+    @cached_property
+    def coarse(self) -> bool:
+        """Whether the precision loses shapes, for which each picture warns."""
+        positions = _with_copies(self.copies, self.arrays.positions)
+        return _arrays.coarse_step(positions, self.arrays.positions.dtype) > 0
+
+
+class Tables(NamedTuple):
+    """Arrays as kernels take them."""
+
+    first: list[NDArray[Any]]
+    """Positions, faces, normals, numbers of materials."""
+    colors: Floats | None
+    last: list[NDArray[Any]]
+    """Kinds, parameters and emission of materials."""
+    copies: Any
+    offset: float
+    """How far above a surface rays start."""
+
+
+def _with_copies(copies: Copies | None, positions: Any) -> Any:
+    """Positions of the rest, and the corners of the boxes of copies."""
+    return positions if copies is None else np.concatenate([positions, copies.corners])
+
+
+def _tables(copies: Copies | None, arrays: SceneArrays) -> Tables:
+    a, given = (arrays, None) if copies is None else copies.join(arrays)
+    tables = (a.positions, a.faces, a.normals, a.material_ids, a.kinds, a.rows, a.emission)
+    flat = [np.require(x, requirements=["C", "A"]) for x in tables]
+    return Tables(flat[:4], a.colors, flat[4:], given, surface_offset(_with_copies(copies, arrays.positions)))
+
 
 def _contents(scene: Scene, shared: list[int], dtype: np.dtype[Any]) -> Hashable:
     """All that a flattened scene depends on: arrays may have been written to since."""
-    meshes: dict[int, Hashable] = {}
-    for mesh in {id(i.mesh): i.mesh for i in scene.instances}.values():
-        arrays = (mesh.positions, mesh.faces, mesh.normals, mesh.colors, mesh.uvs, mesh.material_ids)
-        meshes[id(mesh)] = tuple(None if a is None else (a.shape, a.dtype, hash(a.tobytes())) for a in arrays)
-    things = [(meshes[id(i.mesh)], i.transform.tobytes(), i.materials) for i in scene.instances]
-    return dtype, tuple(shared), tuple(things)
+    # Without a call for each array: small pictures wait for this.
+    found: list[Any] = [dtype, tuple(shared)]
+    numbers: dict[int, int] = {}
+    for instance in scene.instances:
+        mesh = instance.mesh
+        if id(mesh) not in numbers:
+            numbers[id(mesh)] = len(numbers)
+            for a in (mesh.positions, mesh.faces, mesh.normals, mesh.colors, mesh.uvs, mesh.material_ids):
+                found.append(None if a is None else (a.shape, a.dtype, hash(a.tobytes())))
+        found += (numbers[id(mesh)], instance.transform.tobytes(), instance.materials)
+    return tuple(found)
 
 
 _kept: tuple[weakref.ref[Any], Hashable, _Made] | None = None
@@ -107,7 +148,7 @@ class World:
         self.scene, self.dtype = scene, dtype
         sharing = cast("Sharing", _arrays.choice("instances", instances, get_args(Sharing)))
         self.shared = shareable(scene, sharing, rays) if bvh is None else []
-        made = _made(scene, self.shared, dtype)
+        self._made = made = _made(scene, self.shared, dtype)
         self.copies, self.arrays = made.copies, made.arrays
         self._rest = self.copies.rest if self.copies else scene
         if bvh is None:
@@ -119,11 +160,8 @@ class World:
                 raise ValueError(f"bvh: expected one of the flattened scene in {dtype}")
         self.bvh = bvh
         self._all_directions = all_directions
-        _arrays.warn_if_coarse(self._with_copies(self.arrays.positions), dtype, 5)
-
-    def _with_copies(self, positions: Any) -> Any:
-        """Positions of the rest, and the corners of the boxes of copies."""
-        return positions if self.copies is None else np.concatenate([positions, self.copies.corners])
+        if made.coarse:
+            _arrays.warn_if_coarse(_with_copies(self.copies, self.arrays.positions), dtype, 5)
 
     @cached_property
     def _sources(self) -> tuple[Any, tuple[float, ...], Any]:
@@ -150,12 +188,11 @@ class World:
 
     def given(self, moment: Moment) -> tuple[Any, ...]:
         """The scene at a moment, as kernels take it."""
-        a, copies = (moment.arrays, None) if self.copies is None else self.copies.join(moment.arrays)
-        offset = surface_offset(self._with_copies(moment.arrays.positions))
-        tables = (a.positions, a.faces, a.normals, a.material_ids, a.kinds, a.rows, a.emission)
-        flat = [np.require(x, requirements=["C", "A"]) for x in tables]
+        kept = moment.arrays is self.arrays
+        tables = self._made.tables if kept else _tables(self.copies, moment.arrays)
         lights, background, sky = self._sources
-        return moment.bvh._tree, flat[:4], a.colors, flat[4:], lights, (background, offset, sky), copies
+        first, colors, last, copies, offset = tables
+        return moment.bvh._tree, first, colors, last, lights, (background, offset, sky), copies
 
     def at(self, time: float) -> tuple[SceneArrays, BVH]:
         """The scene at a time in [0, 1]."""
