@@ -1,6 +1,8 @@
 //! Any reflection model, as kernels hold it at a surface point: one of all kinds, copied by value.
 
+use super::compensated_glass::CompensatedGlass;
 use super::compensated_lobes::CompensatedLobes;
+use super::compensated_principled::CompensatedPrincipled;
 use super::conductor::Conductor;
 use super::dielectric::Dielectric;
 use super::kulla_conty::Compensated;
@@ -18,7 +20,7 @@ use crate::real::Real;
 use crate::vec::Vec3;
 
 /// Lists the models once: their numbers as the face knows them, and what each method calls. The methods are scalar, and
-/// compiled once a precision: inlined, thirteen models times the places that call them were a third of all code.
+/// compiled once a precision: inlined, fifteen models times the places that call them were a third of all code.
 macro_rules! models {
     ($($number:literal $name:ident($model:ident)),+ $(,)?) => {
         #[derive(Clone, Copy, Debug)]
@@ -74,6 +76,8 @@ models! {
     10 Compensated(Compensated),
     11 Principled(Principled),
     12 CompensatedLobes(CompensatedLobes),
+    13 CompensatedGlass(CompensatedGlass),
+    14 CompensatedPrincipled(CompensatedPrincipled),
 }
 
 /// The factors of a microfacet model, f = D F G / (4 cos θi cos θo).
@@ -99,8 +103,9 @@ impl<T: Real> Bsdf<T> {
     #[inline(always)]
     pub fn transmits(&self) -> bool {
         match self {
-            Bsdf::Principled(p) => p.later && p.spec_trans > T::zero() && p.metallic < T::one(),
-            _ => matches!(self, Bsdf::Dielectric(_) | Bsdf::RoughDielectric(_)),
+            Bsdf::Principled(p) => p.through() > T::zero(),
+            Bsdf::CompensatedPrincipled(p) => p.once.through() > T::zero(),
+            _ => matches!(self, Bsdf::Dielectric(_) | Bsdf::RoughDielectric(_) | Bsdf::CompensatedGlass(_)),
         }
     }
     /// D, F, G and the half vector of models of facets; None of others.
@@ -112,6 +117,8 @@ impl<T: Real> Bsdf<T> {
             Bsdf::RoughConductor(m) => (m.facets, m.fresnel(c)),
             Bsdf::Compensated(m) => (m.once.facets, m.once.fresnel(c)),
             Bsdf::RoughDielectric(m) => (m.facets, m.fresnel(c, wo)),
+            Bsdf::CompensatedGlass(m) => (m.once.facets, m.once.fresnel(c, wo)),
+            Bsdf::CompensatedPrincipled(m) => (m.once.glass.facets, m.once.mirrors(c)),
             Bsdf::Principled(m) => (m.glass.facets, m.mirrors(c)),
             Bsdf::MetallicRoughness(m) => (m.facets(), m.fresnel(c)),
             Bsdf::CompensatedLobes(m) => (m.once.facets(), m.once.fresnel(c)),

@@ -27,7 +27,7 @@ pub const SIZE: usize = 32;
 const TURNS: usize = 32;
 const CELLS: usize = 96;
 /// The cosine that stands for zero.
-const GRAZING: f64 = 1e-6;
+pub const GRAZING: f64 = 1e-6;
 /// √(3/5): the outer points of Gauss and Legendre's three.
 const OUTER: f64 = 0.774_596_669_241_483_4;
 
@@ -42,6 +42,14 @@ pub struct Albedo {
 pub fn knot(i: usize) -> f64 {
     let x = i as f64 / (SIZE - 1) as f64;
     x * x
+}
+
+/// Kinds of facets.
+pub const KINDS: usize = 8;
+
+#[inline(always)]
+pub fn kind(shape: Shape, masking: Masking) -> usize {
+    masking as usize + 4 * (shape == Shape::Beckmann) as usize
 }
 
 fn returned(facets: &Microfacets<f64>, cos: f64) -> f64 {
@@ -62,8 +70,15 @@ fn returned(facets: &Microfacets<f64>, cos: f64) -> f64 {
     sum / (TURNS * CELLS) as f64
 }
 
+impl std::fmt::Debug for Albedo {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        write!(f, "Albedo({:?})", self.average)
+    }
+}
+
 impl Albedo {
-    fn build(shape: Shape, masking: Masking) -> Self {
+    /// From what one bounce off facets returns at a cosine.
+    pub fn build(shape: Shape, masking: Masking, returned: impl Fn(&Microfacets<f64>, f64) -> f64) -> Self {
         let mut table = Albedo { by_cosine: [[0.0; SIZE]; SIZE], average: [0.0; SIZE] };
         for (j, row) in table.by_cosine.iter_mut().enumerate() {
             if j == 0 {
@@ -97,13 +112,12 @@ impl Albedo {
 
     /// The table of a kind of facets.
     pub fn of(shape: Shape, masking: Masking) -> &'static Self {
-        static TABLES: [OnceLock<Box<Albedo>>; 8] = [const { OnceLock::new() }; 8];
-        let number = masking as usize + 4 * (shape == Shape::Beckmann) as usize;
-        TABLES[number].get_or_init(|| Box::new(Albedo::build(shape, masking)))
+        static TABLES: [OnceLock<Box<Albedo>>; KINDS] = [const { OnceLock::new() }; KINDS];
+        TABLES[kind(shape, masking)].get_or_init(|| Box::new(Albedo::build(shape, masking, returned)))
     }
 
     #[inline(always)]
-    fn row(&self, at: f64) -> Slice<'_> {
+    pub fn row(&self, at: f64) -> Slice<'_> {
         let below = (at as usize).min(SIZE - 2);
         Slice { table: self, below, share: at - below as f64 }
     }
@@ -117,24 +131,18 @@ impl Albedo {
 
 /// The place of a width or a cosine among the knots.
 #[inline(always)]
-fn place(x: f64) -> f64 {
+pub fn place(x: f64) -> f64 {
     let at = x.max(0.0).sqrt() * (SIZE - 1) as f64;
     // Below the second knot straight in x.
     if at < 1.0 { at * at } else { at.min((SIZE - 1) as f64) }
 }
 
 /// E of one width, by the cosine.
-#[derive(Clone, Copy)]
+#[derive(Clone, Copy, Debug)]
 pub struct Slice<'a> {
     table: &'a Albedo,
     below: usize,
     share: f64,
-}
-
-impl std::fmt::Debug for Slice<'_> {
-    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
-        write!(f, "Slice({}, {})", self.below, self.share)
-    }
 }
 
 impl Slice<'_> {

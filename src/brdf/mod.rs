@@ -14,12 +14,15 @@
 //! - [`metallic_roughness`]: the material of real-time shading and path tracing alike
 //! - [`specular_glossiness`]: its sibling, and the way between both
 //! - [`kulla_conty`]: rough metal, and [`metallic_roughness`], with the light of further bounces
+//! - [`compensated_glass`]: rough glass with that light
 //! - [`principled`]: the artist's model of film
 //! - [`Bsdf`]: any of them, as kernels hold it
 
 mod arrays;
 mod bsdf;
+pub mod compensated_glass;
 mod compensated_lobes;
+mod compensated_principled;
 pub mod conductor;
 pub mod dielectric;
 pub mod fresnel;

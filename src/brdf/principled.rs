@@ -50,27 +50,43 @@ impl<T: Real> Principled<T> {
         let bright = T::of(0.3) * c.x + T::of(0.6) * c.y + T::of(0.1) * c.z;
         if bright > T::zero() { c * (T::one() / bright) } else { Vec3::splat(T::one()) + c * T::zero() }
     }
+    /// The tint of the dielectric's mirrors.
+    #[inline(always)]
+    pub fn tint(&self) -> Vec3<T> {
+        self.hue().map(
+            #[inline(always)]
+            |h| mix(T::one(), h, self.specular_tint),
+        )
+    }
+    /// What the dielectric's mirrors reflect, and the metal's.
+    #[inline(always)]
+    pub fn two_mirrors(&self, cos_half: T) -> [Vec3<T>; 2] {
+        let (one, weight) = (T::one(), schlick_weight(cos_half));
+        let f = if self.later { fresnel_dielectric(cos_half, self.glass.eta).average() } else { one };
+        let strength = self.specular * T::of(0.08);
+        let dielectric = self.tint().map(
+            #[inline(always)]
+            |t| if self.later { mix(t, one, weight) * f } else { mix(strength * t, one, weight) },
+        );
+        let metal = self.base.map(
+            #[inline(always)]
+            |c| mix(c, one, weight),
+        );
+        [dielectric, metal]
+    }
     /// The mirrors' colour along the normal, of 2012; of 2015 the metal's part and the tint of the dielectric's.
     #[inline(always)]
     pub fn mirrors(&self, cos_half: T) -> Vec3<T> {
         let (one, weight) = (T::one(), schlick_weight(cos_half));
-        let tint = self.hue().map(
-            #[inline(always)]
-            |h| mix(one, h, self.specular_tint),
-        );
         if self.later {
-            let f = fresnel_dielectric(cos_half, self.glass.eta).average();
-            let metal = self.base.map(
-                #[inline(always)]
-                |c| mix(c, one, weight),
-            );
-            return tint.zip(
+            let [dielectric, metal] = self.two_mirrors(cos_half);
+            return dielectric.zip(
                 metal,
                 #[inline(always)]
-                |t, m| mix(mix(t, one, weight) * f, m, self.metallic),
+                |d, m| mix(d, m, self.metallic),
             );
         }
-        tint.zip(
+        self.tint().zip(
             self.base,
             #[inline(always)]
             |t, c| {
@@ -110,12 +126,12 @@ impl<T: Real> Principled<T> {
         let v = T::of(0.25) * smooth.visibility(wi, wo, half);
         self.clearcoat * gtr(half, self.coat_alpha, T::one()) * fresnel * v
     }
-    /// Chances of drawing from the diffuser, the mirrors, the coat and the glass.
+    /// About what the diffuser, the mirrors, the coat and the glass give back.
     #[inline(always)]
-    fn chances(&self, wo: Vec3<T>) -> [T; 4] {
+    pub fn parts(&self, wo: Vec3<T>) -> [T; 4] {
         let (zero, one) = (T::zero(), T::one());
         let rest = one - self.metallic;
-        let glass = if self.later { rest * self.spec_trans } else { zero };
+        let glass = self.through();
         if wo.z < zero {
             return [zero, zero, zero, if glass > zero { one } else { zero }];
         }
@@ -124,8 +140,14 @@ impl<T: Real> Principled<T> {
         let coat = T::of(0.25) * self.clearcoat * mix(T::of(0.04), one, schlick_weight(wo.z));
         // Facets let light pass where the flat interface lets none.
         let glass = glass * (one - shine * T::of(0.5));
+        [body, shine, coat, glass]
+    }
+    /// Chances of drawing from each of them.
+    #[inline(always)]
+    fn chances(&self, wo: Vec3<T>) -> [T; 4] {
+        let [body, shine, coat, glass] = self.parts(wo);
         let sum = body + shine + coat + glass;
-        let scale = if sum > zero { one / sum } else { zero };
+        let scale = if sum > T::zero() { T::one() / sum } else { T::zero() };
         [body * scale, shine * scale, coat * scale, glass * scale]
     }
 }
@@ -174,7 +196,7 @@ impl<T: Real> Model<T> for Principled<T> {
         let (zero, one) = (T::zero(), T::one());
         let none = Vec3::splat(zero);
         let clear = if self.later { one - self.spec_trans } else { one };
-        let through = if self.later { (one - self.metallic) * self.spec_trans } else { zero };
+        let through = self.through();
         if wi.z * wo.z < zero || wo.z < zero {
             // From below, glass is seen alone; what it reflects there is of the glass too.
             return if through > zero { self.glass.eval(wi, wo) * through } else { none };
@@ -209,17 +231,22 @@ impl<T: Real> Model<T> for Principled<T> {
     }
 }
 
-impl<T: Real> Drawn<T> for Principled<T> {
+impl<T: Real> Principled<T> {
+    /// The share of glass.
     #[inline(always)]
-    fn sample(&self, wo: Vec3<T>, u: [T; 3]) -> Option<Draw<T>> {
+    pub fn through(&self) -> T {
+        if self.later { (T::one() - self.metallic) * self.spec_trans } else { T::zero() }
+    }
+    /// As [`RoughDielectric::directed`].
+    #[inline(always)]
+    pub fn directed(&self, wo: Vec3<T>, u: [T; 3]) -> Result<(Vec3<T>, T), Option<Draw<T>>> {
         let (zero, one, two) = (T::zero(), T::one(), T::of(2.0));
         let [body, shine, coat, glass] = self.chances(wo);
         if !(wo.z > zero) && !(glass > zero) {
-            return None;
+            return Err(None);
         }
         let mirrored = |half: Vec3<T>| half * (two * wo.dot(half)) - wo;
         let pair = [u[0], u[1]];
-        let mut eta = one;
         let wi = if u[2] < body {
             square_to_cosine_hemisphere(pair, Method::Concentric)
         } else if u[2] < body + shine {
@@ -228,26 +255,41 @@ impl<T: Real> Drawn<T> for Principled<T> {
             let half = gtr1_sample(pair, self.coat_alpha);
             if !(wo.dot(half) > zero) {
                 // A facet that looks away: what it would send below the horizon is no light of the glass.
-                return Some(Draw::none(mirrored(half)));
+                return Err(Some(Draw::none(mirrored(half))));
             }
             mirrored(half)
         } else if glass > zero {
             let first = body + shine + coat;
             let choice = Lanes::min((u[2] - first) / glass, one - T::EPSILON);
-            let draw = Drawn::sample(&self.glass, wo, [u[0], u[1], choice])?;
-            if !(draw.pdf > zero) {
-                return Some(draw);
+            let (wi, eta) = match self.glass.directed(wo, [u[0], u[1], choice]) {
+                Ok(found) => found,
+                Err(Some(draw)) if draw.specular => {
+                    let through = self.through();
+                    let weight = draw.weight * (through / glass);
+                    return Err(Some(Draw { weight, pdf: draw.pdf * glass, ..draw }));
+                }
+                Err(draw) => return Err(draw),
+            };
+            if !(self.glass.pdf(wi, wo) > zero) {
+                return Err(Some(Draw { eta, ..Draw::none(wi) }));
             }
-            if draw.specular {
-                let through = (one - self.metallic) * self.spec_trans;
-                return Some(Draw { weight: draw.weight * (through / glass), pdf: draw.pdf * glass, ..draw });
-            }
-            eta = draw.eta;
-            draw.wi
+            wi
         } else {
             square_to_cosine_hemisphere(pair, Method::Concentric)
         };
-        Some(weighed(self, wi, wo, eta))
+        // Mirrors as well may send a draw to where glass lets light pass.
+        let crosses = glass > zero && wi.z * wo.z < zero;
+        Ok((wi, if crosses { self.glass.across(wo) } else { one }))
+    }
+}
+
+impl<T: Real> Drawn<T> for Principled<T> {
+    #[inline(always)]
+    fn sample(&self, wo: Vec3<T>, u: [T; 3]) -> Option<Draw<T>> {
+        match self.directed(wo, u) {
+            Ok((wi, eta)) => Some(weighed(self, wi, wo, eta)),
+            Err(draw) => draw,
+        }
     }
 }
 

@@ -23,13 +23,18 @@ pub struct RoughDielectric<T> {
 impl<T: Real> RoughDielectric<T> {
     /// Index on the other side over that on the side of `wo`.
     #[inline(always)]
-    fn across(&self, wo: Vec3<T>) -> T {
+    pub fn across(&self, wo: Vec3<T>) -> T {
         if wo.z > T::zero() { self.eta } else { T::one() / self.eta }
     }
     /// The reflectance of an interface at a cosine.
     #[inline(always)]
     pub fn fresnel(&self, cos_half: T, wo: Vec3<T>) -> Vec3<T> {
         Vec3::splat(fresnel_dielectric(cos_half.abs(), self.across(wo)).average())
+    }
+    /// What an interface passes: none where rounding takes its reflectance above one.
+    #[inline(always)]
+    fn through(cos_half: T, eta: T) -> T {
+        Lanes::max(T::one() - fresnel_dielectric(cos_half, eta).average(), T::zero())
     }
     /// Both directions with `wo` above the horizon: the surface is the same seen from below.
     #[inline(always)]
@@ -71,7 +76,7 @@ impl<T: Real> Model<T> for RoughDielectric<T> {
         }
         let Some((half, sum)) = Self::bend(wi, wo, eta) else { return Vec3::splat(wi.dot(wo) * T::zero()) };
         let (ci, co) = (wi.dot(half).abs(), wo.dot(half).abs());
-        let through = T::one() - fresnel_dielectric(co, eta).average();
+        let through = Self::through(co, eta);
         let masked = self.facets.masking_of(wi) * self.facets.masking_of(wo);
         let d = self.facets.distribution(half) / (sum * sum);
         self.tint * (d * through * masked * (ci / wi.z.abs()) * (co / wo.z))
@@ -93,37 +98,49 @@ impl<T: Real> Model<T> for RoughDielectric<T> {
         }
         let Some((half, sum)) = Self::bend(wi, wo, eta) else { return wi.dot(wo) * zero };
         let (ci, co) = (wi.dot(half).abs(), wo.dot(half).abs());
-        let through = T::one() - fresnel_dielectric(co, eta).average();
+        let through = Self::through(co, eta);
         let bent = eta / sum;
         self.facets.density_over_cosine(wo, half) * co * through * (bent * bent * ci)
     }
 }
 
-impl<T: Real> Drawn<T> for RoughDielectric<T> {
+impl<T: Real> RoughDielectric<T> {
+    /// The draw's direction, and the index on its side over that on the side of `wo`; or the whole draw, where it has no
+    /// density or weighs nothing.
     #[inline(always)]
-    fn sample(&self, wo: Vec3<T>, u: [T; 3]) -> Option<Draw<T>> {
+    pub fn directed(&self, wo: Vec3<T>, u: [T; 3]) -> Result<(Vec3<T>, T), Option<Draw<T>>> {
         let (zero, one) = (T::zero(), T::one());
         if !(wo.z.abs() > zero) {
-            return None;
+            return Err(None);
         }
         let eta = self.across(wo);
         if eta == one {
-            return Some(Draw { wi: -wo, weight: self.tint, pdf: one, specular: true, eta });
+            return Err(Some(Draw { wi: -wo, weight: self.tint, pdf: one, specular: true, eta }));
         }
         let side = one.copysign(wo.z);
         let up = wo * side;
         let half = self.facets.sample(up, [u[0], u[1]]);
         let cos_half = up.dot(half);
         if !(cos_half > zero) {
-            return Some(Draw::none(wo));
+            return Err(Some(Draw::none(wo)));
         }
         let f = fresnel_dielectric(cos_half, eta);
         if u[2] < f.average() {
             let wi = half * (cos_half + cos_half) - up;
             let wi = wi * side;
-            return Some(if wi.z * side > zero { weighed(self, wi, wo, one) } else { Draw::none(wi) });
+            return if wi.z * side > zero { Ok((wi, one)) } else { Err(Some(Draw::none(wi))) };
         }
         let wi = (half * (cos_half / eta - f.cos_t) - up * (one / eta)).normalize() * side;
-        Some(if wi.z * side < zero { weighed(self, wi, wo, eta) } else { Draw::none(wi) })
+        if wi.z * side < zero { Ok((wi, eta)) } else { Err(Some(Draw::none(wi))) }
+    }
+}
+
+impl<T: Real> Drawn<T> for RoughDielectric<T> {
+    #[inline(always)]
+    fn sample(&self, wo: Vec3<T>, u: [T; 3]) -> Option<Draw<T>> {
+        match self.directed(wo, u) {
+            Ok((wi, eta)) => Some(weighed(self, wi, wo, eta)),
+            Err(draw) => draw,
+        }
     }
 }

@@ -407,7 +407,11 @@ impl<T: Real> Tracer<'_, T> {
 /// Whether a material may have a perfect mirror or pane beside what is rough.
 #[inline(always)]
 fn partly_smooth<T: Real>(bsdf: &Bsdf<T>) -> bool {
-    matches!(bsdf, Bsdf::Plastic(_) | Bsdf::RoughDielectric(_) | Bsdf::Principled(_))
+    match bsdf {
+        Bsdf::Plastic(_) | Bsdf::RoughDielectric(_) | Bsdf::Principled(_) => true,
+        // Equal indices pass light straight.
+        _ => matches!(bsdf, Bsdf::CompensatedGlass(_) | Bsdf::CompensatedPrincipled(_)),
+    }
 }
 
 /// A direction about z, evenly over the hemisphere.

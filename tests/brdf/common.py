@@ -88,3 +88,17 @@ def samples_follow(model, wo, n=1 << 16, seed=1, dtype=np.float64):
     terms = expected > 4
     statistic = ((observed - expected)[terms] ** 2 / expected[terms]).sum()
     return stats.chi2.sf(statistic, terms.sum() - 1)
+
+
+def lost_flux(model, side=1, n=4096, dtype=np.float64, seed=1):
+    """The part of the power that comes evenly from one side which does not come back, reflected or passed."""
+    import shadelab as sl
+
+    x, weight = np.polynomial.legendre.leggauss(24)
+    cosine = (x + 1) / 2
+    wo = np.stack([np.sqrt(1 - cosine**2), 0 * cosine, side * cosine], -1).astype(dtype)
+    u = np.minimum(sl.sampling.sobol(n, 3, seed=seed), 1 - 1e-7).astype(dtype)
+    draws = model.sample(wo[:, None], u)
+    # Power rather than radiance.
+    back = np.where(draws.weight[..., 0] == 0, 0, draws.weight[..., 0].astype(float) * draws.eta.astype(float) ** 2)
+    return 1 - (back.mean(1) * weight * cosine).sum()

@@ -24,6 +24,11 @@ MODELS = [
     brdf.SpecularGlossiness(),
     brdf.Principled(),
     brdf.Principled(spec_trans=0.5, form="2015"),
+    brdf.RoughDielectric(0.6, compensation="kulla_conty"),
+    brdf.RoughDielectric(0.6, 0.7, compensation="scaled"),
+    brdf.Principled(metallic=0.3, roughness=0.8, compensation="kulla_conty"),
+    brdf.Principled(metallic=0.3, roughness=0.8, spec_trans=0.5, form="2015", compensation="kulla_conty"),
+    brdf.Principled(metallic=0.3, roughness=0.8, spec_trans=0.5, form="2015", compensation="scaled"),
 ]
 
 

@@ -107,6 +107,27 @@ def test_white_furnace_is_white():
     assert np.abs(traced.radiance - 1).max() < 1e-4
 
 
+@pytest.mark.parametrize("compensation", ["kulla_conty", "scaled"])
+@pytest.mark.parametrize("make", ["RoughDielectric", "Principled"])
+def test_a_furnace_hides_rough_glass_that_loses_nothing(make, compensation):
+    """In its walls light is reflected some four times; without compensation a third of it is lost."""
+    glass = {
+        "RoughDielectric": lambda form: brdf.RoughDielectric(0.7, compensation=form),
+        "Principled": lambda form: brdf.Principled(
+            1.0, roughness=0.7**0.5, spec_trans=1.0, form="2015", compensation=form
+        ),
+    }[make]
+    camera = scene.Camera((0, 1, 3), (0, 0, 0), fov_y=0.3)
+
+    def mean(form):
+        world = scene.Scene(thing(mesh.box((1.5, 1.2, 0.9)), glass(form), turn=0.5), (), camera, background=(1, 1, 1))
+        return sl.pathtrace.path_trace(world, (32, 32), samples=512, max_depth=200).radiance.mean()
+
+    # The table's error a few times over, and noise.
+    assert mean(compensation) == pytest.approx(1, abs=0.01)
+    assert mean("none") < 0.8
+
+
 @pytest.mark.parametrize("roughness", [0.0, 0.5, 1.0])
 def test_furnace_gains_nothing_from_any_material(roughness):
     material = scene.Material((1, 1, 1), metallic=0.0, roughness=roughness)
@@ -298,6 +319,11 @@ MIXED = {
     "nonlinear": brdf.Plastic((1.0,) * 3, nonlinear=True),
     "pane": brdf.RoughDielectric(0.3, 1.0),
     "glass": brdf.RoughDielectric(0.3, 1.5),
+    "compensated pane": brdf.RoughDielectric(0.8, 1.0, compensation="kulla_conty"),
+    "compensated glass": brdf.RoughDielectric(0.8, 1.5, compensation="kulla_conty"),
+    "compensated principled": brdf.Principled(
+        (0.5,) * 3, roughness=0.8, spec_trans=0.5, form="2015", compensation="kulla_conty"
+    ),
     "principled": brdf.Principled((0.5,) * 3, eta=1.0, spec_trans=0.5, form="2015"),
 }
 

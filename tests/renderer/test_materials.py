@@ -38,6 +38,12 @@ def test_compensation_only_where_its_loss_is_above_the_bound():
     assert 0.2 < float(found.reason.split("off by ")[1].rstrip("%")) / 100 < 0.7
 
 
+def test_glass_goes_without_compensation_where_little_is_lost():
+    smooth, rough = (brdf.RoughDielectric(a, compensation="kulla_conty") for a in (0.02, 1.0))
+    assert way(smooth, LAMP).kind == "rough dielectric"
+    assert way(rough, LAMP, max_error=0.01).kind == "rough dielectric with compensation"
+
+
 def test_transformed_cosines_where_an_area_light_meets_a_glossy_surface():
     glossy = Material((0.9, 0.6, 0.4), 1.0, 0.5)
     assert way(glossy, PANEL, max_error=0.1).method == "ltc"

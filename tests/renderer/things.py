@@ -38,4 +38,6 @@ MATERIALS = {
     "specular glossiness": brdf.SpecularGlossiness(),
     "compensated": brdf.RoughConductor(0.6, compensation="kulla_conty"),
     "principled": brdf.Principled((0.6, 0.3, 0.2), roughness=0.4, clearcoat=0.5),
+    "compensated glass": brdf.RoughDielectric(0.6, compensation="kulla_conty"),
+    "compensated principled": brdf.Principled((0.6, 0.3, 0.2), 0.5, 0.9, compensation="kulla_conty"),
 }

@@ -21,11 +21,12 @@ def test_schlick_is_off_by_hundredths_for_glass_and_more_for_metals():
 
 def test_compensation_gives_back_what_is_lost():
     found = errors(study.run("energy compensation", **FAST | {"size": (64, 64)}))
-    for roughness, loss in ((0.5, 0.118), (0.75, 0.344), (1.0, 0.59)):
-        scene = f"roughness {roughness:g}"
-        assert found[scene, "rough conductor(compensation=none)"] == pytest.approx(loss, abs=0.01)
+    lost = {"roughness 0.5": 0.118, "roughness 0.75": 0.344, "roughness 1": 0.59}
+    lost |= {"glass from outside, roughness 0.75": 0.11, "glass from within, roughness 0.75": 0.36}
+    for scene, loss in lost.items():
+        assert found[scene, "facets(compensation=none)"] == pytest.approx(loss, abs=0.01)
         for form in ("kulla_conty", "kulla_conty_as_published", "scaled"):
-            assert found[scene, f"rough conductor(compensation={form})"] < 0.01
+            assert found[scene, f"facets(compensation={form})"] < 0.01
 
 
 def test_correlated_masking_is_its_own_reference():

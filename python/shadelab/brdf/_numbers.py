@@ -7,10 +7,13 @@ from typing import Any, ClassVar
 import numpy as np
 
 from ._model import Model
+from .interface import fresnel, fresnel_average
 
 SHAPES = ("ggx", "beckmann")
 DIFFUSERS = ("qualitative", "energy_preserving")
 COMPENSATIONS = ("none", "kulla_conty", "kulla_conty_as_published", "scaled")
+# Clear facets absorb nothing, so that the forms of the colour are one.
+GLASS_COMPENSATIONS = ("none", "kulla_conty", "scaled")
 MASKINGS = ("height_correlated", "separable", "schlick", "v_cavity")
 # Beyond these squares of squares are no numbers in single, and pictures no others: a mirror, a point.
 LEAST, MOST = 1e-9, 1e9
@@ -37,6 +40,23 @@ _UNIT = {"core": 0, "low": 0.0, "high": 1.0, "above": None}
 
 def _flag(on: bool) -> tuple[float, Any]:
     return float(on), _UNIT
+
+
+def _passes(eta: Any) -> tuple[Any, Any]:
+    """What an interface passes of diffuse light that meets the larger index."""
+    eta = np.asarray(eta, np.float64)
+    with np.errstate(all="ignore"):
+        return np.clip(1 - fresnel_average(np.maximum(eta, 1 / eta)), 0.0, 1.0), _UNIT
+
+
+def _grazing(eta: Any) -> tuple[Any, Any]:
+    """What an interface reflects of diffuse light under Schlick's weight, (1 − cos θ)⁵."""
+    x, weight = np.polynomial.legendre.leggauss(64)
+    cosine = (x + 1) / 2
+    eta = np.asarray(eta, np.float64)[..., None]
+    with np.errstate(all="ignore"):
+        reflected = fresnel(cosine, eta) * (weight * cosine * (1 - cosine) ** 5)
+    return np.clip(reflected.sum(-1), 0.0, 1.0), _UNIT
 
 
 def _metal(m: Any) -> tuple[float, ...]:

@@ -10,6 +10,7 @@ from numpy.typing import ArrayLike
 from .. import _arrays
 from .._arrays import Floats
 from .._kernels import brdf as _kernels
+from ._numbers import LEAST, MOST
 
 __all__ = [
     "AlbedoTable",
@@ -252,7 +253,7 @@ def kulla_conty(
 
 
 class AlbedoTable(NamedTuple):
-    """What one bounce of perfect mirrors gives back."""
+    """What one bounce gives back of light, of perfect mirrors or of rough glass."""
 
     albedo: Floats
     """(32, 32): rows by alpha, columns by the cosine."""
@@ -262,13 +263,19 @@ class AlbedoTable(NamedTuple):
     """(32,) the alphas of rows and the cosines of columns."""
 
 
-def albedo_table(distribution: Shape = "ggx", masking: Form = "height_correlated") -> AlbedoTable:
-    """The table behind `kulla_conty`, made by quadrature once a program.
+def albedo_table(
+    distribution: Shape = "ggx", masking: Form = "height_correlated", *, eta: float | None = None
+) -> AlbedoTable:
+    """What one bounce gives back, by width and cosine: the table behind energy compensation.
 
     Parameters
     ----------
     distribution : {"ggx", "beckmann"}
     masking : {"height_correlated", "separable", "schlick", "v_cavity"}
+        Of reflection; what is refracted takes Smith's separable form.
+    eta : float, optional
+        Of rough glass, light reflected and passed together: index across the interface over that on the side of the
+        light, in [1e-9, 1e9]. None is the perfect mirror of `kulla_conty`.
 
     Returns
     -------
@@ -278,13 +285,22 @@ def albedo_table(distribution: Shape = "ggx", masking: Form = "height_correlated
     Raises
     ------
     TypeError, ValueError
-        If a name is unknown.
+        If a name is unknown, or `eta` out of its domain.
+
+    Notes
+    -----
+    Made by quadrature over drawn normals, once a program: the mirror's in about 0.1 s, of glass the two slabs about an
+    index when it is first asked for. Between the 32 slabs on either side of η = 1 tables are
+    interpolated: averages are within 0.0015, of alpha from 1e-4 on.
 
     Examples
     --------
     >>> round(float(1 - albedo_table().average[-1]), 2)
     0.59
+    >>> [round(float(1 - albedo_table(masking="separable", eta=n).average[-1]), 2) for n in (1.5, 1 / 1.5)]
+    [0.25, 0.56]
     """
     _arrays.choice("distribution", distribution, SHAPES)
     _arrays.choice("masking", masking, FORMS)
-    return AlbedoTable(*(np.asarray(part) for part in _kernels.albedo_table(distribution, masking)))
+    eta = None if eta is None else _arrays.number("eta", eta, LEAST, MOST)
+    return AlbedoTable(*(np.asarray(part) for part in _kernels.albedo_table(distribution, masking, eta)))

@@ -9,7 +9,7 @@ from dataclasses import dataclass
 from typing import Any, ClassVar, Literal
 
 from ._model import Model, color, option, parameter
-from ._numbers import LEAST, MASKINGS, MOST, SHAPES, _Rough, _strength
+from ._numbers import COMPENSATIONS, GLASS_COMPENSATIONS, LEAST, MASKINGS, MOST, SHAPES, _passes, _Rough, _strength
 from .artists import MetallicRoughness
 
 __all__ = ["Dielectric", "RoughDielectric"]
@@ -72,6 +72,9 @@ class RoughDielectric(_Rough):
         Of reflection; what is refracted takes Smith's separable form.
     tint : array_like, shape (..., 3)
         A factor of what passes, in [0, 1].
+    compensation : {"none", "kulla_conty", "scaled"}
+        Of the light that facets send on to each other: lost; given back as a lobe on either side; or the single bounce
+        over what it gives back along `wo`, which is cheaper and not symmetric.
 
     Notes
     -----
@@ -81,13 +84,22 @@ class RoughDielectric(_Rough):
     straight, specular. Beckmann facets narrower than 0.01 lose light in float32 at cosines below 1e-3, as those of
     `RoughConductor` do.
 
-    What facets send on to each other is lost, and nothing gives it back. Of the power that comes from everywhere on one
+    Without compensation what facets send on to each other is lost. Of the power that comes from everywhere on one
     side, at η = 1.5 and √alpha 0.25, 0.5, 0.75 and 1: 0.5, 3, 11 and 25 % from outside, 1.5, 14, 36 and 56 % from
     within, where much is reflected totally and more often than once. Below √alpha = 0.25 it is less than 2 %.
 
+    With compensation all comes back within 0.2 %, whatever index and width (`albedo_table` tells what a bounce gives).
+    "kulla_conty" keeps the symmetry above. Of what is missing on one side the part that a smooth interface passes of
+    diffuse light leaves on the other, or less where less is missing there: a random walk among the facets takes these
+    sides but for 0.05 of the light (η to 2.5). Tint colours once what crosses. Near equal indices the lobes hold what
+    masking takes from light that passes nearly straight, 23 % at alpha = 1, and make it diffuse; "scaled" keeps it
+    straight. The table of an index is made when it is first asked for, in some 0.3 s.
+
     References
     ----------
-    B. Walter, S. R. Marschner, H. Li, K. E. Torrance, *Microfacet models for refraction through rough surfaces*, 2007.
+    B. Walter, S. R. Marschner, H. Li, K. E. Torrance, *Microfacet models for refraction through rough surfaces*, 2007;
+    C. Kulla, A. Conty, *Revisiting physically based shading at Imageworks*, 2017; E. Turquin, *Practical multiple
+    scattering compensation for microfacet models*, 2019.
 
     Examples
     --------
@@ -101,12 +113,19 @@ class RoughDielectric(_Rough):
     distribution: Literal["ggx", "beckmann"] = option("ggx", SHAPES)
     masking: Literal["height_correlated", "separable", "schlick", "v_cavity"] = option("separable", MASKINGS)
     tint: Any = color((1.0, 1.0, 1.0))
+    compensation: Literal["none", "kulla_conty", "scaled"] = option("none", GLASS_COMPENSATIONS)
     _kind: ClassVar[int] = 5
     _transmits: ClassVar[bool] = True
 
     def _numbers(self) -> list[Any]:
-        alpha, eta, alpha_y, distribution, masking, tint = self._parameters()
-        return [tint, eta, alpha, alpha_y, distribution, masking]
+        alpha, eta, alpha_y, distribution, masking, tint, _ = self._parameters()
+        plain = [tint, eta, alpha, alpha_y, distribution, masking]
+        if self.compensation == "none":
+            return plain
+        return [*plain, (self.compensation, {"choices": COMPENSATIONS}), _passes(self.eta)]
+
+    def _number(self) -> int:
+        return 5 if self.compensation == "none" else 13
 
     def _stand_in(self) -> MetallicRoughness:
         roughness = math.sqrt(math.sqrt(self.alpha * self.alpha_y))

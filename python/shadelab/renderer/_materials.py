@@ -76,6 +76,9 @@ def _models(material: Any) -> list[tuple[Any, str]]:
             plain = replace(model, compensation="none")
             if plain != stand_in:
                 found.append((plain, _named(plain)))
+    elif getattr(model, "compensation", "none") != "none":
+        plain = replace(model, compensation="none")
+        found.append((plain, _named(plain)))
     name = _named(model)
     if name == "diffuse":
         return [(model, name)]

@@ -79,7 +79,7 @@ def plan(
     wide; two sides), there are rays, which take the place of evidence as well.
 
     Materials are tried, not guessed at: where a small picture shows them (128 places each), under the scene's lights
-    without obstacles, cheaper models (a diffuser; metallic-roughness; metal without compensation) and cheaper ways to
+    without obstacles, cheaper models (a diffuser; metallic-roughness; one without compensation) and cheaper ways to
     light from areas (as points; one representative point; transformed cosines; few samples) stand beside the material
     itself under 1,024 samples, and the first that keeps the bound is taken; `Plan.shading` tells which, why, and how
     far it is off. The ambient pass takes one reflectance for a material if that keeps the bound, else samples. Times

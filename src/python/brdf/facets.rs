@@ -1,5 +1,6 @@
 //! Bindings of facets: ndf, masking_shadowing, kulla_conty; conversions of specular_glossiness.
 
+use crate::brdf::compensated_glass;
 use crate::brdf::kulla_conty::{Albedo, Form, SIZE, knot, missing};
 use crate::brdf::ndf as kernels;
 use crate::brdf::specular_glossiness as workflow;
@@ -110,10 +111,24 @@ pub fn kulla_conty(
     )
 }
 
-/// The table of E by roughness² and cosine, its averages, and the knots of both axes.
+/// The table of E by roughness² and cosine, its averages, and the knots of both axes: of perfect mirrors, or of the
+/// interfaces of an index.
 #[pyfunction]
-pub fn albedo_table(distribution: &str, form: &str) -> PyResult<(Vec<Vec<f64>>, Vec<f64>, Vec<f64>)> {
-    let table = Albedo::of(shape(distribution)?, masking(form)?);
+pub fn albedo_table(
+    py: Python<'_>,
+    distribution: &str,
+    form: &str,
+    eta: Option<f64>,
+) -> PyResult<(Vec<Vec<f64>>, Vec<f64>, Vec<f64>)> {
+    let (shape, masking) = (shape(distribution)?, masking(form)?);
+    let of_glass;
+    let table = match eta {
+        None => Albedo::of(shape, masking),
+        Some(eta) => {
+            of_glass = py.detach(|| compensated_glass::table(shape, masking, eta));
+            &of_glass
+        }
+    };
     let rows = table.by_cosine.iter().map(|r| r.to_vec()).collect();
     Ok((rows, table.average.to_vec(), (0..SIZE).map(knot).collect()))
 }

@@ -18,14 +18,18 @@ Array = NDArray[Any]
 
 @dataclass(frozen=True)
 class Furnace:
-    """A perfect rough mirror of an artist's roughness under light from everywhere."""
+    """A perfect rough mirror, or clear rough glass, of an artist's roughness under light from everywhere."""
 
     roughness: float
     distribution: str = "ggx"
+    eta: float | None = None
+    """Of glass: the index across its surface over that on the side of the eye."""
 
 
 _SCENES = {f"roughness {r:g}": Furnace(r) for r in (0.25, 0.5, 0.75, 1.0)}
 _SCENES["Beckmann, roughness 0.75"] = Furnace(0.75, "beckmann")
+_SCENES["glass from outside, roughness 0.75"] = Furnace(0.75, eta=1.5)
+_SCENES["glass from within, roughness 0.75"] = Furnace(0.75, eta=1 / 1.5)
 # Draws of each pixel.
 _DRAWS = 64
 
@@ -58,11 +62,18 @@ def _run(inputs: Views, prepared: Any, compensation: Any) -> Array:
     """The light that comes back, by the column: drawn with the model's own density."""
     f = inputs.furnace
     distribution: Any = f.distribution
-    masking: Any = "height_correlated" if distribution == "ggx" else "separable"
-    model = brdf.RoughConductor(
-        f.roughness**2, 1e-9, 1e9, distribution=distribution, masking=masking, compensation=compensation
-    )
-    weight = model.sample(inputs.wo, np.minimum(inputs.u, 1 - np.finfo(np.float32).eps)).weight[..., 0]
+    masking: Any = "height_correlated" if distribution == "ggx" and f.eta is None else "separable"
+    facets: Any = {"distribution": distribution, "masking": masking}
+    model: brdf.Model
+    if f.eta is None:
+        model = brdf.RoughConductor(f.roughness**2, 1e-9, 1e9, **facets, compensation=compensation)
+    else:
+        # Clear facets colour nothing: the two colours are one.
+        form: Any = "kulla_conty" if compensation == "kulla_conty_as_published" else compensation
+        model = brdf.RoughDielectric(f.roughness**2, f.eta, **facets, compensation=form)
+    draws = model.sample(inputs.wo, np.minimum(inputs.u, 1 - np.finfo(np.float32).eps))
+    # Power rather than radiance.
+    weight = draws.weight[..., 0] * draws.eta * draws.eta
     albedo = weight.mean((0, 2), dtype=np.float64)
     return np.broadcast_to(albedo, inputs.wo.shape[:2]).astype(inputs.wo.dtype)
 
@@ -79,7 +90,8 @@ def _display(inputs: Views, value: Array) -> Array:
 
 
 _ABOUT = """Mirrors of a rough surface throw light at each other; models of one bounce lose it, a third at roughness
-0.75 and 59 % at 1. A perfect mirror in a furnace must give all back: the reference is one. How much of it does each
+0.75 and 59 % at 1. Rough glass loses as well, most of light from within. A perfect mirror in a furnace must give all
+back, and glass must, reflected and passed together: the reference is one. How much of it does each
 compensation give back, and what do 64 draws for a direction cost
 with it? The two colours of Kulla and Conty's lobe
 agree here, where nothing is absorbed; they part for coloured metals."""
@@ -94,7 +106,7 @@ def question() -> Question:
         _SCENES,
         lambda inputs: np.ones(inputs.wo.shape[:2]),
         Metric("light", _residual, "", "mean share of light lost or invented, weighted by the cosine", "mean"),
-        [Candidate("rough conductor", _run, {"compensation": _FORMS}, about="Facets of GGX or Beckmann, F = 1.")],
+        [Candidate("facets", _run, {"compensation": _FORMS}, about="Rough metal of GGX or Beckmann at F = 1; glass.")],
         setup=_setup,
         display=_display,
         size=(64, 64),
