@@ -2,6 +2,11 @@
 
 Directions are unit vectors that leave the surface, in the local frame whose z is the normal: `wi` to the light, `wo`
 to the eye. Values are BRDFs in sr⁻¹, without the cosine; densities are per solid angle of `wi`.
+
+Microfacet models are `RoughConductor`, `RoughDielectric`, `MetallicRoughness`, `SpecularGlossiness` and `Principled`;
+`ndf`, `masking_shadowing` and `fresnel` are their factors, which ``eval(wi, wo, full_output=True)`` gives. Sheen
+and clearcoat are parameters of `Principled`; `Plastic` is a diffuser under a smooth coat. Energy compensation is
+``compensation=`` of the rough models, by `kulla_conty` and `albedo_table`; `white_furnace` measures what they lose.
 """
 
 from ._model import Draws, Model, Terms
