@@ -166,9 +166,9 @@ impl<V: Lanes> Microfacets<V> {
     /// Beckmann all.
     #[inline(always)]
     pub fn sample(&self, wo: Vec3<V>, u: [V; 2]) -> Vec3<V> {
-        let (zero, one, two) = (wo.z.num(0.0), wo.z.num(1.0), wo.z.num(2.0));
+        let (zero, one) = (wo.z.num(0.0), wo.z.num(1.0));
         let turn = V::select(one.num(0.5).less(u[0]), u[0] - one, u[0]);
-        let (sin, cos) = math::sin_cos(two * one.num(std::f64::consts::PI) * turn);
+        let (sin, cos) = math::sin_cos_turns(turn);
         let (ax, ay) = (self.alpha_x, self.alpha_y);
         if self.shape == Shape::Beckmann {
             // tan² of the stretched normal is exponentially distributed.

@@ -2,4 +2,5 @@
 //!
 //! - [`panorama`]: equirectangular pictures of radiance: looked up, drawn from by importance
 
+mod guided;
 pub mod panorama;

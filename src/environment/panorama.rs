@@ -10,6 +10,7 @@
 //! M. Pharr, W. Jakob, G. Humphreys, *Physically Based Rendering*, 3rd edition, 2016, sections 13.6.7 and 14.2.4;
 //! H.-C. Chen, Y. Asau, *On generating random variates from an empirical distribution*, 1974 (the guides).
 
+use super::guided::Guided;
 use crate::color::luminance::luminance;
 use crate::dispatch;
 use crate::math;
@@ -43,69 +44,6 @@ pub struct Draw<T> {
     pub pdf: T,
 }
 
-/// Lines of shares of one, summed up, with guides: where the search for a number starts and ends.
-struct Guided<T> {
-    /// Shares of each line.
-    count: usize,
-    /// Sums, count + 1 a line.
-    sums: Vec<T>,
-    /// For each of `count` equal parts of [0, 1] the share in which it begins, and that in which the last one ends.
-    guides: Vec<u32>,
-}
-
-impl<T: Real> Guided<T> {
-    fn new(count: usize) -> Self {
-        Guided { count, sums: Vec::new(), guides: Vec::new() }
-    }
-
-    /// Adds a line in proportion to weights; an even one if there are none.
-    fn push(&mut self, weights: &[f64]) {
-        let (n, start) = (self.count, self.sums.len());
-        let total: f64 = weights.iter().sum();
-        let share = |w: f64| if total > 0.0 { w / total } else { 1.0 / n as f64 };
-        let mut sum = 0.0;
-        for &w in weights {
-            self.sums.push(T::of(f64::min(sum, 1.0)));
-            sum += share(w);
-        }
-        self.sums.push(T::one());
-        let (sums, mut k) = (&self.sums[start..], 0);
-        for part in 0..=n {
-            // A little before, since u · n is rounded.
-            let edge = (part as f64 - 0.01 - n as f64 * T::EPSILON.to_f64()) / n as f64;
-            while k + 1 < n && sums[k + 1].to_f64() <= edge {
-                k += 1;
-            }
-            self.guides.push(k as u32);
-        }
-    }
-
-    /// The share of a line at `u` in [0, 1], and where in it.
-    #[inline(always)]
-    fn find(&self, line: usize, u: T) -> (usize, T) {
-        let n = self.count;
-        let sums = &self.sums[line * (n + 1)..][..n + 1];
-        let part = ((u * T::of(n as f64)).to_f64() as usize).min(n - 1);
-        let guides = &self.guides[line * (n + 1) + part..][..2];
-        let (mut low, mut high) = (guides[0] as usize, guides[1] as usize + 1);
-        // Guides stand a little before the parts.
-        if sums[high] <= u {
-            high = n;
-        }
-        while high - low > 1 {
-            let middle = (low + high) / 2;
-            if sums[middle] <= u {
-                low = middle;
-            } else {
-                high = middle;
-            }
-        }
-        let (start, end) = (sums[low], sums[low + 1]);
-        let rest = (u - start) / (end - start);
-        (low, Lanes::min(Lanes::max(rest, T::zero()), T::one()))
-    }
-}
-
 /// The four pixels about a place, and how far it is from the first to the last along the row and down.
 #[derive(Clone, Copy)]
 struct Cell<T> {
@@ -116,10 +54,10 @@ struct Cell<T> {
 
 /// Where the integral of the line from `a` at 0 to `b` at 1 reaches the part `x` of the whole.
 #[inline(always)]
-fn reach<T: Real>(a: T, b: T, x: T) -> T {
+fn reach<V: Lanes>(a: V, b: V, x: V) -> V {
     let area = x * (a + b);
-    let root = Lanes::max(a * a + (b - a) * area, T::zero()).sqrt();
-    Lanes::min(area / (a + root), T::one())
+    let root = (a * a + (b - a) * area).max(x.num(0.0)).sqrt();
+    (area / (a + root)).min(x.num(1.0))
 }
 
 impl<T: Real> Panorama<T> {
@@ -237,9 +175,8 @@ impl<T: Real> Panorama<T> {
     #[inline(always)]
     fn toward<V: Lanes<Elem = T>>(&self, column: V, row: V) -> (Vec3<V>, V) {
         let (w, h) = (self.width as f64, self.height as f64);
-        let pi = std::f64::consts::PI;
-        let (sine, y) = math::sin_cos(row * row.num(pi / h));
-        let (a, b) = math::sin_cos((column - row.num(0.5 * w)) * row.num(2.0 * pi / w));
+        let (sine, y) = math::sin_cos_turns(row * row.num(0.5 / h));
+        let (a, b) = math::sin_cos_turns((column - row.num(0.5 * w)) * row.num(1.0 / w));
         let (x, z) = (sine * a, -(sine * b));
         let (sin, cos) = (row.like(self.turn.0), row.like(self.turn.1));
         (Vec3::new(cos * x + sin * z, y, cos * z - sin * x), sine.max(row.like(T::EPSILON)))
@@ -281,18 +218,38 @@ impl<T: Real> Panorama<T> {
     /// [`Panorama::sample`] of eight points.
     #[inline(always)]
     pub fn samples<S: Simd>(&self, s: S, u: &[[T; 8]; 2]) -> Draw<T::V8<S>> {
-        let (mut columns, mut rows) = ([T::zero(); 8], [T::zero(); 8]);
-        let mut out = [[T::zero(); 8]; 4];
+        let (h, zero) = (self.height, T::zero());
+        let (k, x) = self.down.finds(&[0; 8], &u[1]);
+        let (j, y) = self.along.finds(&k, &u[0]);
+        let mut cells = [Cell { at: [0; 4], s: zero, t: zero }; 8];
+        let (mut weights, mut edge, mut start, mut span) = ([[zero; 8]; 4], [zero; 8], [zero; 8], [zero; 8]);
+        let mut columns = [zero; 8];
         for l in 0..8 {
-            let (cell, column, row) = self.pick([u[0][l], u[1][l]]);
-            (columns[l], rows[l]) = (column, row);
-            let mixed = self.mix(&cell);
+            cells[l] = self.about(k[l].max(1) - 1, k[l].min(h - 1), j[l], zero, zero);
+            for m in 0..4 {
+                weights[m][l] = self.pixels[cells[l].at[m]][3];
+            }
+            // Half rows are constant from top to bottom.
+            let half = k[l] == 0 || k[l] == h;
+            edge[l] = if half { T::one() } else { zero };
+            start[l] = if k[l] == 0 { zero } else { T::of(k[l] as f64) - T::of(0.5) };
+            span[l] = if half { T::of(0.5) } else { T::one() };
+            columns[l] = T::of(j[l] as f64) + T::of(0.5);
+        }
+        let [a, b, c, d] = load4::<T, S>(s, &weights);
+        let [edge, start, span, x] = load4::<T, S>(s, &[edge, start, span, x]);
+        let t = Lanes::select(edge.equal(x.num(1.0)), x, reach(a + b, c + d, x));
+        let along = reach(a + (c - a) * t, b + (d - b) * t, SimdBase::load_array_ref(s, &y));
+        let column: T::V8<S> = SimdBase::load_array_ref(s, &columns);
+        let (wi, sine) = self.toward::<T::V8<S>>(column + along, start + t * span);
+        let (t, along) = (t.to_array(), along.to_array());
+        let mut out = [[zero; 8]; 4];
+        for l in 0..8 {
+            let mixed = self.mix(&Cell { s: along[l], t: t[l], ..cells[l] });
             for m in 0..4 {
                 out[m][l] = mixed[m];
             }
         }
-        let (column, row) = (SimdBase::load_array_ref(s, &columns), SimdBase::load_array_ref(s, &rows));
-        let (wi, sine) = self.toward::<T::V8<S>>(column, row);
         let [r, g, b, weight] = load4::<T, S>(s, &out);
         Draw { wi, radiance: Vec3::new(r, g, b), pdf: weight / sine }
     }

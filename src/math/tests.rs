@@ -115,6 +115,48 @@ fn double_precision_agrees_with_std() {
     }
 }
 
+/// Sine and cosine of turns in double precision, and what their rounding lost.
+fn of_turns(x: f64) -> [f64; 2] {
+    let n = (4.0 * x).round();
+    let r = x - n / 4.0;
+    let angle = r * (2.0 * PI);
+    // What the product lost, and what π did: 2π is 2.4e-16 longer than its double.
+    let lost = r.mul_add(2.0 * PI, -angle) + r * 2.4492935982947064e-16;
+    let (s, c) = (angle.sin(), angle.cos());
+    let (s, c) = (s + c * lost, c - s * lost);
+    [[s, c], [c, -s], [-s, -c], [-c, s]][n.rem_euclid(4.0) as usize]
+}
+
+#[test]
+fn turns_keep_their_ulps_and_quarters_are_exact() {
+    let (mut random, mut worst) = (Random(5), [0f64; 2]);
+    for _ in 0..1_000_000 {
+        let x = random.between(-1.0, 1.0) / (1u64 << (random.bits() % 8)) as f64;
+        let x = if random.bits() % 3 == 0 { x * 1e5 } else { x };
+        let (single, exact) = (sin_cos_turns(x as f32), of_turns(f64::from(x as f32)));
+        worst[0] = worst[0].max(ulps32(single.0, exact[0])).max(ulps32(single.1, exact[1]));
+        let (double, exact) = (sin_cos_turns(x), of_turns(x));
+        worst[1] = worst[1].max(ulps64(double.0, exact[0])).max(ulps64(double.1, exact[1]));
+    }
+    assert!(worst[0] <= 2.0 && worst[1] <= 3.0, "{worst:?}");
+    for n in -8..=8 {
+        let (s, c) = sin_cos_turns(f64::from(n) / 4.0);
+        assert_eq!([s, c], [[0.0, 1.0], [1.0, 0.0], [0.0, -1.0], [-1.0, 0.0]][(n + 8) as usize % 4]);
+    }
+    assert!(sin_cos_turns(-0.0f32).0.is_sign_negative());
+}
+
+#[test]
+fn the_octant_is_that_of_the_circle() {
+    let mut random = Random(6);
+    for _ in 0..100_000 {
+        let x = random.between(-PI / 4.0, PI / 4.0);
+        assert_eq!(sin_cos_octant(x), sin_cos(x));
+        let x = (0.999 * x) as f32;
+        assert_eq!(sin_cos_octant(x), sin_cos(x));
+    }
+}
+
 #[test]
 fn pow_and_atan2_keep_their_ulps() {
     let mut random = Random(3);

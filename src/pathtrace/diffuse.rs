@@ -408,7 +408,7 @@ fn cosine_hemisphere<V: Lanes>(u: V, v: V) -> Vec3<V> {
     let wide = b.abs().less(a.abs());
     let (r, other) = (V::select(wide, a, b), V::select(wide, b, a));
     let ratio = V::select(r.equal(zero), zero, other / r);
-    let (sin, cos) = math::sin_cos(u.num(std::f64::consts::FRAC_PI_4) * ratio);
+    let (sin, cos) = math::sin_cos_octant(u.num(std::f64::consts::FRAC_PI_4) * ratio);
     let (long, short) = (r * cos, r * sin);
     let z = ((one - r) * (one + r)).max(zero).sqrt();
     Vec3::new(V::select(wide, long, short), V::select(wide, short, long), z)

@@ -418,6 +418,6 @@ fn partly_smooth<T: Real>(bsdf: &Bsdf<T>) -> bool {
 #[inline(always)]
 pub fn uniform_hemisphere<V: Lanes>(u: V, v: V) -> Vec3<V> {
     let r = ((u.num(1.0) - u) * (u.num(1.0) + u)).sqrt();
-    let (sin, cos) = math::sin_cos(v.num(2.0 * std::f64::consts::PI) * v);
+    let (sin, cos) = math::sin_cos_turns(v);
     Vec3::new(r * cos, r * sin, u)
 }

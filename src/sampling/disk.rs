@@ -20,7 +20,7 @@ pub enum Method {
 #[inline(always)]
 pub(super) fn point_and_depth<V: Lanes>(u: [V; 2], method: Method) -> ([V; 2], V) {
     let (half, one, two) = (u[0].num(0.5), u[0].num(1.0), u[0].num(2.0));
-    let (pi, u) = (u[0].num(std::f64::consts::PI), in_square(u));
+    let u = in_square(u);
     match method {
         Method::Concentric => {
             // Distances from the square's border, exact near it; radius with a sign, so that a wedge and its mirror
@@ -35,14 +35,14 @@ pub(super) fn point_and_depth<V: Lanes>(u: [V; 2], method: Method) -> ([V; 2], V
             let (r, other) = (V::select(wide, a, b), V::select(wide, b, a));
             let depth = V::select(wide, border[0], border[1]);
             let ratio = other / V::select(r.equal(r.num(0.0)), one, r);
-            let (sin, cos) = math::sin_cos(pi * pi.num(0.25) * ratio);
+            let (sin, cos) = math::sin_cos_octant(r.num(std::f64::consts::FRAC_PI_4) * ratio);
             let point = [r * V::select(wide, cos, sin), r * V::select(wide, sin, cos)];
             (point, depth * (two - depth))
         }
         Method::Polar => {
             // Counted from the nearer end of the turn: small angles round less.
             let turn = V::select(half.less(u[1]), u[1] - one, u[1]);
-            let (sin, cos) = math::sin_cos(two * pi * turn);
+            let (sin, cos) = math::sin_cos_turns(turn);
             let r = u[0].sqrt();
             ([r * cos, r * sin], one - u[0])
         }
@@ -50,7 +50,7 @@ pub(super) fn point_and_depth<V: Lanes>(u: [V; 2], method: Method) -> ([V; 2], V
 }
 
 #[inline(always)]
-pub fn square_to_disk<T: Real>(u: [T; 2], method: Method) -> [T; 2] {
+pub fn square_to_disk<V: Lanes>(u: [V; 2], method: Method) -> [V; 2] {
     point_and_depth(u, method).0
 }
 

@@ -3,15 +3,15 @@
 //! P. Shirley, K. Chiu, *A low distortion map between disk and square*, 1997.
 
 use super::disk::{self, Method};
-use crate::real::Real;
+use crate::real::{Lanes, Real};
 use crate::vec::Vec3;
 
 /// Height 1 − r² over a point of the disk at distance r: the height comes from the radius before rounding, so that none
 /// sinks below the horizon.
 #[inline(always)]
-pub fn square_to_hemisphere<T: Real>(u: [T; 2], method: Method) -> Vec3<T> {
+pub fn square_to_hemisphere<V: Lanes>(u: [V; 2], method: Method) -> Vec3<V> {
     let ([x, y], depth) = disk::point_and_depth(u, method);
-    let wide = (T::one() + depth).sqrt();
+    let wide = (depth.num(1.0) + depth).sqrt();
     Vec3::new(x * wide, y * wide, depth)
 }
 

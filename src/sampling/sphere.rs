@@ -5,16 +5,16 @@
 
 use super::{below_one, in_square};
 use crate::math;
-use crate::real::Real;
+use crate::real::{Lanes, Real};
 use crate::vec::Vec3;
 
 /// Height 1 − 2u, azimuth 2πv.
 #[inline(always)]
-pub fn square_to_sphere<T: Real>(u: [T; 2]) -> Vec3<T> {
-    let (one, two, [u, v]) = (T::one(), T::of(2.0), in_square(u));
+pub fn square_to_sphere<V: Lanes>(u: [V; 2]) -> Vec3<V> {
+    let (one, two, [u, v]) = (u[0].num(1.0), u[0].num(2.0), in_square(u));
     // From the nearer end of the turn: small angles round less.
-    let turn = if v > T::of(0.5) { v - one } else { v };
-    let (sin, cos) = math::sin_cos(two * T::PI * turn);
+    let turn = V::select(v.num(0.5).less(v), v - one, v);
+    let (sin, cos) = math::sin_cos_turns(turn);
     let r = two * (u * (one - u)).sqrt();
     Vec3::new(r * cos, r * sin, one - two * u)
 }

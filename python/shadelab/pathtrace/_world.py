@@ -23,6 +23,7 @@ from ._copies import Copies, Sharing, shareable
 if TYPE_CHECKING:
     from ..scene import Scene, SceneArrays
 
+_SHARING = get_args(Sharing)
 # Moments at which moving scenes are traced, in one run, at most.
 _MOMENTS = 64
 
@@ -146,7 +147,7 @@ class World:
         if not callable(getattr(scene, "flatten", None)) or isinstance(scene, np.ndarray):
             raise TypeError(f"scene: expected a Scene, got {type(scene).__name__}")
         self.scene, self.dtype = scene, dtype
-        sharing = cast("Sharing", _arrays.choice("instances", instances, get_args(Sharing)))
+        sharing = cast("Sharing", _arrays.choice("instances", instances, _SHARING))
         self.shared = shareable(scene, sharing, rays) if bvh is None else []
         self._made = made = _made(scene, self.shared, dtype)
         self.copies, self.arrays = made.copies, made.arrays
@@ -167,16 +168,16 @@ class World:
     def _sources(self) -> tuple[Any, tuple[float, ...], Any]:
         """The lights; the background; the panorama."""
         scene = self.scene
-        lights, background, sky = list(scene.lights), np.array(scene.background, float), scene.environment
+        lights, background, sky = scene.lights, list(scene.background), scene.environment
         if self._all_directions:
-            ambient = [lamp for lamp in lights if isinstance(lamp, light.AmbientLight)]
-            lights = [lamp for lamp in lights if not isinstance(lamp, light.AmbientLight)]
-            for lamp in ambient:
-                background += lamp.radiance
+            ambient = [lamp.radiance for lamp in lights if isinstance(lamp, light.AmbientLight)]
+            if ambient:
+                lights = [lamp for lamp in lights if not isinstance(lamp, light.AmbientLight)]
             if sky is not None and all((row == sky.radiance[0, 0]).all() for row in sky.radiance):
-                background, sky = background + sky.radiance[0, 0], None
+                ambient, sky = [*ambient, sky.radiance[0, 0].tolist()], None
+            background = [sum(channel) for channel in zip(background, *ambient, strict=True)]
         panorama = None if sky is None else sky._panorama(self.dtype)
-        return light._table("lights", lights), tuple(float(c) for c in background), panorama
+        return light._table("lights", lights), tuple(map(float, background)), panorama
 
     def all_arrays(self, arrays: SceneArrays) -> SceneArrays:
         """What is flattened, and the meshes of copies behind it in their own space."""

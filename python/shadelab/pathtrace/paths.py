@@ -26,6 +26,7 @@ __all__ = ["Traced", "path_trace", "progressive"]
 Strategy: TypeAlias = Literal["uniform", "bsdf", "light", "mis"]
 Sampler: TypeAlias = Literal["sobol", "independent", "stratified", "latin_hypercube", "multi_jittered", "r2", "halton"]
 LightSelection: TypeAlias = Literal["auto", "all", "power", "tree"]
+_STRATEGIES, _SAMPLERS, _SELECTIONS = get_args(Strategy), get_args(Sampler), get_args(LightSelection)
 
 
 def path_trace(
@@ -273,7 +274,9 @@ class _Prepared:
         shape = (size[1], size[0]) if pixels is None else (1, len(pixels))
         for moment in self.world.moments(start, samples, self.seed):
             mean, variance = (np.empty((*shape, 3), dtype) for _ in range(2))
-            outliers = np.empty(shape, np.int32)
+            # By `fill`, since `full` takes as long as a hundred paths where caches are cold.
+            outliers, counted = np.empty(shape, np.int32), np.empty(shape, np.int32)
+            counted.fill(moment.samples)
             removed = np.empty((*shape, 3), dtype) if math.isfinite(self.clamp) else None
             out = [mean.reshape(-1, 3), variance.reshape(-1, 3), outliers.reshape(-1)]
             counts = (size[0], moment.samples, moment.start, *self.depths, self.seed)
@@ -285,7 +288,7 @@ class _Prepared:
                 [*out, None if removed is None else removed.reshape(-1, 3)],
                 self.progress,
             )
-            yield Traced(mean, variance, np.full(shape, moment.samples, np.int32), outliers, removed)
+            yield Traced(mean, variance, counted, outliers, removed)
 
 
 def _prepare(
@@ -313,9 +316,9 @@ def _prepare(
     seed = _arrays.count("seed", seed, 0, 2**64 - 1)
     start = _arrays.count("start", start, 0, 2**32 - 1 - samples)
     names = (
-        _arrays.choice("strategy", strategy, get_args(Strategy)),
-        _arrays.choice("sampler", sampler, get_args(Sampler)),
-        _arrays.choice("light_selection", light_selection, get_args(LightSelection)),
+        _arrays.choice("strategy", strategy, _STRATEGIES),
+        _arrays.choice("sampler", sampler, _SAMPLERS),
+        _arrays.choice("light_selection", light_selection, _SELECTIONS),
     )
     roulette = _arrays.count("roulette", roulette, 0, 1 << 16)
     kernel_filter = pixel_filter(filter)._kernel()

@@ -1,17 +1,17 @@
 //! Bindings of the warps of directions: sphere, cone, spherical_triangle, spherical_rectangle, area_to_solid_angle.
 
 use super::warps::disk_method;
-use crate::elementwise;
 use crate::python::array::Arrays;
 use crate::sampling::cone::Cone;
 use crate::sampling::spherical_rectangle::SphericalRectangle;
 use crate::sampling::spherical_triangle::SphericalTriangle;
 use crate::sampling::{area_to_solid_angle as measure, sphere};
+use crate::{elementwise, lanewise};
 use pyo3::prelude::*;
 
 #[pyfunction]
 pub fn square_to_sphere(py: Python<'_>, given: Arrays<'_>, out: Arrays<'_>) -> PyResult<()> {
-    elementwise!(py, given, out, |u: [T; 2]| -> (d: [T; 3]) {
+    lanewise!(py, given, out, |u: 2| -> (d: 3) {
         sphere::square_to_sphere(u).to_array()
     })
 }

@@ -1,8 +1,8 @@
 //! Bindings of the warps of disks, triangles and the hemisphere: disk, triangle, cosine_hemisphere, hemisphere.
 
-use crate::elementwise;
 use crate::python::array::{Arrays, unknown};
 use crate::sampling::{cosine_hemisphere as cosine, disk, hemisphere, triangle};
+use crate::{elementwise, lanewise};
 use pyo3::prelude::*;
 
 pub fn disk_method(method: &str) -> PyResult<disk::Method> {
@@ -41,7 +41,7 @@ macro_rules! by_method {
 
 #[pyfunction]
 pub fn square_to_disk(py: Python<'_>, method: &str, given: Arrays<'_>, out: Arrays<'_>) -> PyResult<()> {
-    by_method!(method, |Chosen| elementwise!(py, given, out, |u: [T; 2]| -> (p: [T; 2]) {
+    by_method!(method, |Chosen| lanewise!(py, given, out, |u: 2| -> (p: 2) {
         disk::square_to_disk(u, Chosen)
     }))
 }
@@ -81,7 +81,7 @@ pub fn square_to_cosine_hemisphere(
     given: Arrays<'_>,
     out: Arrays<'_>,
 ) -> PyResult<()> {
-    by_method!(method, |Chosen| elementwise!(py, given, out, |u: [T; 2]| -> (d: [T; 3]) {
+    by_method!(method, |Chosen| lanewise!(py, given, out, |u: 2| -> (d: 3) {
         cosine::square_to_cosine_hemisphere(u, Chosen).to_array()
     }))
 }
@@ -113,7 +113,7 @@ pub fn square_to_hemisphere(
     given: Arrays<'_>,
     out: Arrays<'_>,
 ) -> PyResult<()> {
-    by_method!(method, |Chosen| elementwise!(py, given, out, |u: [T; 2]| -> (d: [T; 3]) {
+    by_method!(method, |Chosen| lanewise!(py, given, out, |u: 2| -> (d: 3) {
         hemisphere::square_to_hemisphere(u, Chosen).to_array()
     }))
 }
