@@ -257,16 +257,23 @@ impl<T: Real> Drawn<T> for CompensatedGlass<T> {
         if !(wo.z.abs() > T::zero()) {
             return None;
         }
-        let mut u = u;
-        if let Some((missing, chance)) = self.added(wo) {
-            if u[2] < chance {
+        // Weighed in one place, whatever it is drawn from: evaluation is the most of the code.
+        let added = self.added(wo);
+        let chance = match added {
+            Some((_, chance)) => chance,
+            None => T::zero(),
+        };
+        let found = match added {
+            Some((missing, _)) if u[2] < chance => {
                 let (wi, crosses) = missing.directed(wo, [u[0], u[1], u[2] / chance]);
-                let eta = if crosses { self.once.across(wo) } else { one };
-                return Some(weighed(self, wi, wo, eta));
+                Ok((wi, if crosses { self.once.across(wo) } else { one }))
             }
-            u[2] = Lanes::min((u[2] - chance) / (one - chance), one - T::EPSILON);
-        }
-        match self.once.directed(wo, u) {
+            _ => {
+                let rest = Lanes::min((u[2] - chance) / (one - chance), one - T::EPSILON);
+                self.once.directed(wo, [u[0], u[1], rest])
+            }
+        };
+        match found {
             Ok((wi, eta)) => Some(weighed(self, wi, wo, eta)),
             Err(draw) => draw,
         }

@@ -164,18 +164,19 @@ impl<T: Real> Drawn<T> for CompensatedPrincipled<T> {
         let one = T::one();
         let [mirrors, in_glass] = self.chances(wo);
         let added = mirrors + in_glass;
-        if u[2] < added {
+        let found = if u[2] < added {
             let (wi, crosses) = match &self.glass {
                 Some(glass) if u[2] >= mirrors => {
                     glass.directed(wo, [u[0], u[1], (u[2] - mirrors) / in_glass])
                 }
                 _ => (square_to_cosine_hemisphere([u[0], u[1]], Method::Concentric), false),
             };
-            let eta = if crosses { self.once.glass.across(wo) } else { one };
-            return Some(weighed(self, wi, wo, eta));
-        }
-        let rest = Lanes::min((u[2] - added) / (one - added), one - T::EPSILON);
-        match self.once.directed(wo, [u[0], u[1], rest]) {
+            Ok((wi, if crosses { self.once.glass.across(wo) } else { one }))
+        } else {
+            let rest = Lanes::min((u[2] - added) / (one - added), one - T::EPSILON);
+            self.once.directed(wo, [u[0], u[1], rest])
+        };
+        match found {
             Ok((wi, eta)) => Some(weighed(self, wi, wo, eta)),
             // Straight through.
             Err(Some(draw)) if draw.specular => {
