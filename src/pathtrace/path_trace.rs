@@ -310,17 +310,34 @@ fn tile<T: Real, S: Simd>(
     }
 }
 
-/// The pixels of a tile, neighbours on both axes close together: squares of four by four.
+/// The pixels of a tile, neighbours on both axes close together: squares of four by four, in squares of eight, and so
+/// on, that a wave sees as little of the scene as it can.
 fn order([width, height]: [usize; 2]) -> Vec<[u16; 2]> {
+    const LARGEST: usize = 64;
     let mut order = Vec::with_capacity(width * height);
-    for y in (0..height).step_by(4) {
-        for x in (0..width).step_by(4) {
-            for v in y..height.min(y + 4) {
-                for u in x..width.min(x + 4) {
-                    order.push([u as u16, v as u16]);
-                }
-            }
+    for y in (0..height).step_by(LARGEST) {
+        for x in (0..width).step_by(LARGEST) {
+            square(&mut order, [x, y], [width, height], LARGEST);
         }
     }
     order
+}
+
+/// Adds the part of a square within the tile, a quarter after the other.
+fn square(order: &mut Vec<[u16; 2]>, [x, y]: [usize; 2], within: [usize; 2], size: usize) {
+    if x >= within[0] || y >= within[1] {
+        return;
+    }
+    if size > 4 {
+        let half = size / 2;
+        for [u, v] in [[x, y], [x + half, y], [x, y + half], [x + half, y + half]] {
+            square(order, [u, v], within, half);
+        }
+        return;
+    }
+    for v in y..within[1].min(y + size) {
+        for u in x..within[0].min(x + size) {
+            order.push([u as u16, v as u16]);
+        }
+    }
 }

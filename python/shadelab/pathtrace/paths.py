@@ -113,7 +113,7 @@ def path_trace(
     Notes
     -----
     Unbiased up to `max_depth`, without `clamp` and `target_error`. Samples take the same time within a tenth, from 128²
-    to 2048² pixels and from 16 to 4,096 of each (a lone one of each a sixth more), and memory does not grow with them.
+    to 2048² pixels and from one to 4,096 of each, and memory does not grow with them.
     `variance` is that of independent samples: of scrambled points an upper bound as a rule, so two seeds tell more.
     Lights of some size are seen from the side that shines, stop there what meets them, other lights' and the sky's
     light too, and are not there from behind; surfaces have two sides. (`shadelab.render` draws no lights.) The camera's
