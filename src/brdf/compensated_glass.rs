@@ -129,7 +129,7 @@ impl<T: Real> Missing<T> {
         if n == 1.0 {
             return None;
         }
-        let row = place((facets.alpha_x.to_f64() * facets.alpha_y.to_f64()).sqrt());
+        let row = place(facets.mean_width().to_f64());
         let (outside, a) = between(facets.shape, facets.masking, n);
         let (inside, b) = between(facets.shape, facets.masking, 1.0 / n);
         let average = |slabs: [&'static Albedo; 2], share: f64| {

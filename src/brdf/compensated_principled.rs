@@ -89,8 +89,7 @@ impl<T: Real> Model<T> for CompensatedPrincipled<T> {
         let once = Principled::of(row);
         let (form, passes, grazing) = (Form::of(row[16]), row[17], row[18]);
         let facets = &once.glass.facets;
-        let slice =
-            Albedo::of(Shape::Ggx, Masking::Separable).width((facets.alpha_x * facets.alpha_y).sqrt());
+        let slice = Albedo::of(Shape::Ggx, Masking::Separable).width(facets.mean_width());
         let through = once.through();
         let eta = once.glass.eta;
         let glass = if through > T::zero() { Missing::of(facets, eta, passes) } else { None };

@@ -217,8 +217,7 @@ impl<T: Real> Model<T> for Compensated<T> {
     #[inline(always)]
     fn of(row: &Row<T>) -> Self {
         let once = RoughConductor::of(row);
-        let alpha = (once.facets.alpha_x * once.facets.alpha_y).sqrt();
-        let slice = Albedo::of(once.facets.shape, once.facets.masking).width(alpha);
+        let slice = Albedo::of(once.facets.shape, once.facets.masking).width(once.facets.mean_width());
         let fresnel = triple(row, 14).times(once.tint);
         Compensated { once, form: Form::of(row[13]), slice, fresnel }
     }

@@ -126,17 +126,18 @@ def test_the_whole_range_of_indices_is_held(eta, dtype):
 
 
 def test_of_two_widths_some_loss_is_left():
-    """As the docstring says; along x and y the errors differ in sign."""
+    """As the docstring says, on the average over azimuths."""
     cosine, turn = np.sqrt((np.arange(16) + 0.5) / 16)[:, None], (np.arange(8) + 0.5) * np.pi / 16
     s = np.sqrt(1 - cosine**2)
     wo = np.stack(np.broadcast_arrays(s * np.cos(turn), s * np.sin(turn), cosine), -1)[..., None, :]
     u = np.minimum(sampling.sobol(1024, 3, seed=1), 1 - 1e-9)
-    for alpha_y, left in ((0.5, 0.035), (0.1, 0.23)):
+    for alpha_y, left in ((0.5, 0.012), (0.1, 0.036)):
         for side in (1, -1):
             draws = brdf.RoughDielectric(1.0, 1.5, alpha_y=alpha_y, compensation="kulla_conty").sample(
                 wo * [1, 1, side], u
             )
-            assert 0.02 < 1 - np.where(draws.pdf > 0, draws.weight[..., 0] * draws.eta**2, 0).mean() < left
+            lost = 1 - np.where(draws.pdf > 0, draws.weight[..., 0] * draws.eta**2, 0).mean()
+            assert -0.01 < lost < left
 
 
 def test_scaling_is_the_bounce_over_what_it_gives():

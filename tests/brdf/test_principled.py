@@ -249,19 +249,18 @@ def test_of_paint_compensation_adds_little(form):
         assert 0 <= (brdf.white_furnace(plain) - brdf.white_furnace(given)).max() < 0.005
 
 
-@pytest.mark.parametrize(("anisotropic", "left"), [(0.3, 0.01), (0.5, 0.035)])
-def test_of_two_widths_some_loss_is_left(anisotropic, left):
-    """As the docstring says: the table is of the geometric mean."""
+@pytest.mark.parametrize(
+    ("anisotropic", "roughness", "left"), [(0.5, 0.5, 0.005), (0.5, 0.75, 0.005), (1.0, 0.75, 0.07), (0.5, 1.0, 0.035)]
+)
+def test_of_two_widths_some_loss_is_left(anisotropic, roughness, left):
+    """As the docstring says, on the average over azimuths: most where a width is above one."""
     x, weight = np.polynomial.legendre.leggauss(16)
     cosine, turn = ((x + 1) / 2)[:, None], (np.arange(8) + 0.5) * np.pi / 16
     s = np.sqrt(1 - cosine**2)
     wo = np.stack(np.broadcast_arrays(s * np.cos(turn), s * np.sin(turn), cosine), -1)
-    for roughness in (0.5, 1.0):
-        model = brdf.Principled(
-            1.0, metallic=1.0, roughness=roughness, anisotropic=anisotropic, compensation="kulla_conty"
-        )
-        albedo = brdf.directional_albedo(model, wo, 2048)[..., 0].mean(1)
-        assert 0 <= 1 - (albedo * weight * cosine[:, 0]).sum() < left
+    model = brdf.Principled(1.0, metallic=1.0, roughness=roughness, anisotropic=anisotropic, compensation="kulla_conty")
+    albedo = brdf.directional_albedo(model, wo, 2048)[..., 0].mean(1)
+    assert -0.001 < 1 - (albedo * weight * cosine[:, 0]).sum() < left
 
 
 def test_mirrors_draws_through_glass_say_that_they_cross():

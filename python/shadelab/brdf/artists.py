@@ -123,8 +123,9 @@ class Principled(Model):
 
     Compensation restores the light that is lost between facets, of metal, of dielectric mirrors and of glass each by
     itself, and takes nothing away: paint that gives back too much still does, and a little more. White metal or glass
-    of any roughness then gives all back within 0.2 %. With two widths it takes their geometric mean: at `anisotropic`
-    0.5 up to 3.5 % of white metal's light is still lost, at 1 up to a third.
+    of any roughness then gives all back within 0.2 %. With two widths it takes the mean of those that directions about
+    see: up to roughness 0.75 at most 0.5 % of white metal's light is still lost at `anisotropic` 0.5, 7 % at 1. Widths
+    above one, which `anisotropic` makes of roughness near one, are compensated as one: there 3 % and a quarter are.
 
     The form of 2015 is Mitsuba's `principled` within 1e-5 but for three things: its coat is multiplied by
     4 cos θi cos θo, hues are taken by another luminance (the source's 0.3, 0.6, 0.1 here), and draws choose among lobes

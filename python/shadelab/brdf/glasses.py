@@ -93,9 +93,9 @@ class RoughDielectric(_Rough):
     diffuse light leaves on the other, or less where less is missing there: a random walk among the facets takes these
     sides but for 0.05 of the light (η to 2.5). Tint colours once what crosses. Near equal indices the lobes hold what
     masking takes from light that passes nearly straight, 23 % at alpha = 1, and make it diffuse; "scaled" keeps it
-    straight. With two widths the table is of their geometric mean: of alpha 1 and 0.5 some 3 % are still lost, of 1 and
-    0.1 half of what was. Tables are made for an index when it is first asked for, in some 0.3 s; a path tracer takes a
-    sixth longer than without.
+    straight. With two widths the table is of the mean of those that directions about see: of alpha 1 and 0.5 up to 1 %
+    is still lost, of 1 and 0.1 up to 3.5 %. Tables are made for an index when it is first asked for, in some 0.3 s; a
+    path tracer takes a sixth longer than without.
 
     References
     ----------

@@ -89,8 +89,9 @@ class RoughConductor(_Rough):
     -----
     Without compensation what mirrors hide from each other is lost (`white_furnace` says how much). GGX normals are
     drawn as they are seen from `wo`, so that weights are at most one; of Beckmann's all are drawn. With two widths the
-    compensation takes their geometric mean. In float32 a half vector does not resolve Beckmann facets narrower than
-    0.01 at cosines below 1e-3, and light is lost there: 1 % at alpha = 1e-3, most of it at 1e-5. GGX loses none.
+    compensation takes the mean of those that directions about see: where one is ten times the other, up to 2 % of white
+    metal's light is still lost. In float32 a half vector does not resolve Beckmann facets narrower than 0.01 at cosines
+    below 1e-3, and light is lost there: 1 % at alpha = 1e-3, most of it at 1e-5. GGX loses none.
 
     References
     ----------
