@@ -165,3 +165,25 @@ def test_threads_that_trace_different_scenes_do_not_get_in_each_others_way():
     for thread in threads:
         thread.join()
     assert not wrong
+
+
+@pytest.mark.parametrize("instances", ["flat", "shared"])
+def test_frames_are_of_the_scene_as_it_was_when_they_were_asked_for(instances):
+    b = mesh.icosphere(1)
+    given = [b.positions.astype(np.float32), b.faces.copy(), b.positions.astype(np.float32)]
+    own = mesh.Mesh(*given, colors=np.full((len(b.positions), 3), 0.5), material_ids=np.zeros(len(b.faces), np.int32))
+    things = [scene.Instance(own, sl.transform.translate([x, 0, 0])) for x in (-1, 1)]
+    world = scene.Scene(things, (), CAMERA, background=(1, 1, 1))
+
+    def frames():
+        return sl.pathtrace.progressive(world, (8, 8), 8, instances=instances)
+
+    wanted = [frame.radiance for frame in frames()]
+    for array in (own.positions, own.faces, own.normals, own.colors, own.material_ids):
+        # Made anew, since another scene was looked at, and asked for before it changes.
+        look(ball())
+        coming, before = frames(), array.copy()
+        array[:] = 7 if array is own.material_ids else array[::-1] * 0.5 if array.dtype.kind == "f" else array[::-1]
+        assert all(np.array_equal(frame.radiance, a) for frame, a in zip(coming, wanted, strict=True))
+        array[:] = before
+        assert np.array_equal([frame.radiance for frame in frames()], wanted)

@@ -131,9 +131,10 @@ class Copies:
 
 
 def _single(mesh: Mesh, dtype: np.dtype[Any]) -> Mesh:
-    """A mesh in the precision of the picture, with normals."""
-    positions = np.ascontiguousarray(mesh.positions, dtype)
+    """A mesh in the precision of the picture, with normals, of arrays of its own: the user may write to theirs."""
+    positions, faces = np.array(mesh.positions, dtype, order="C"), mesh.faces.copy()
     normals = mesh.normals
     if normals is None:
-        normals = np.nan_to_num(_mesh.vertex_normals(positions, mesh.faces), nan=0.0)
-    return replace(mesh, positions=positions, normals=normals.astype(dtype))
+        normals = np.nan_to_num(_mesh.vertex_normals(positions, faces), nan=0.0)
+    others = {name: None if (a := getattr(mesh, name)) is None else a.copy() for name in ("colors", "material_ids")}
+    return replace(mesh, positions=positions, faces=faces, normals=normals.astype(dtype), uvs=None, **others)
