@@ -5,9 +5,11 @@ import subprocess
 import sys
 import time
 
+import numpy as np
 import pytest
 from shadelab import __main__ as command_line
 from shadelab import _techniques
+from shadelab.scene import load_image
 
 
 def shadelab(*arguments, **options):
@@ -155,3 +157,13 @@ def test_study_of_a_model_writes_its_report(tmp_path, capsys):
     assert status == 0 and "choice: " in text and "pcss" in text
     assert {p.name for p in out.iterdir()} == {"index.html", "figures.csv", "figures.json", "front.png", "pictures"}
     assert list(out.rglob("*.exr")) and list(out.rglob("*-flip.png"))
+
+
+def test_reference_and_frame_are_shown_by_one_curve(tmp_path):
+    """A pixel of sky is of the same radiance in both, and as much of either is exposed."""
+    pictures = []
+    for extra in ([], ["--reference", "--samples", "4"]):
+        out = tmp_path / f"{len(extra)}.png"
+        assert command_line.main(["render", "default", "-o", str(out), "--size", "48x27", *extra]) == 0
+        pictures.append(load_image(out)[0, 0])
+    assert np.abs(pictures[0] - pictures[1]).max() < 0.02  # exposures follow each picture's own brightness

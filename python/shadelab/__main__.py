@@ -178,11 +178,16 @@ def _render(options: argparse.Namespace) -> int:
 
 def _render_reference(made: Any, options: argparse.Namespace) -> None:
     from . import pathtrace, scene
+    from .renderer.frames import displayed, png
 
     traced = pathtrace.path_trace(
         made, options.size, samples=options.samples, seed=options.seed, progress=_progress("path tracing")
     )
-    scene.save_image(options.out, traced.radiance)
+    if options.out.suffix.lower() == ".png":
+        # By the same exposure and tone curve as a frame's.
+        options.out.write_bytes(png(displayed(traced.radiance)))
+    else:
+        scene.save_image(options.out, traced.radiance)
 
 
 def _progress(label: str) -> Any:

@@ -8,6 +8,8 @@ from __future__ import annotations
 import json
 import math
 import os
+import warnings
+from collections.abc import Mapping
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -44,8 +46,13 @@ def load(path: str | os.PathLike[str], *, stage: bool = True) -> Scene:
     -------
     Scene
         Nodes of the file are instances with their transforms, normals, texture coordinates, and materials (base
-        colour, metallic, roughness, emission). Textures of the base colour are taken at the vertices, as vertex
-        colours. The camera is fitted to the model.
+        colour, metallic, roughness, emission: of glTF up to one, of OBJ `Ke`). Textures of the base colour are taken
+        at the vertices, as vertex colours. The camera is fitted to the model.
+
+    Warns
+    -----
+    UserWarning
+        If the file has lights or cameras of its own (glTF): they are not read.
 
     Raises
     ------
@@ -142,6 +149,9 @@ def _instances(path: Path) -> list[Instance]:
     except ImportError:
         raise ImportError("loading models needs trimesh: pip install 'shadelab[io]'") from None
     linear = path.suffix.lower() in (".glb", ".gltf")
+    unread = _unread(path) if linear else []
+    if unread:
+        warnings.warn(f"{path}: its {' and '.join(unread)} are not read", UserWarning, stacklevel=3)
     try:
         if path.suffix.lower() == ".gltf" and not isinstance(json.loads(path.read_bytes()), dict):
             raise ValueError("it holds no JSON object")
@@ -163,9 +173,27 @@ def _instances(path: Path) -> list[Instance]:
     return made
 
 
+def _unread(path: Path) -> list[str]:
+    """What a glTF file holds that no scene is made of."""
+    try:
+        data = path.read_bytes()
+        if data[:4] == b"glTF":
+            # A header of twelve bytes, then the first chunk: its length, its kind, the JSON.
+            data = data[20 : 20 + int.from_bytes(data[12:16], "little")]
+        held = json.loads(data)
+        lights = held.get("extensions", {}).get("KHR_lights_punctual", {}).get("lights")
+        return [name for name, there in (("lights", lights), ("cameras", held.get("cameras"))) if there]
+    # A broken file is the parser's to tell.
+    except (OSError, ValueError, AttributeError):
+        return []
+
+
 def _reason(error: Exception) -> str:
     """What is wrong with a file, of what its parser stumbled over."""
     text = str(error).strip().split("\n")[0]
+    if isinstance(error, ModuleNotFoundError):
+        # Which guesses at the encoding of what cannot be decoded.
+        return "it is not text" if error.name in ("charset_normalizer", "chardet") else text
     if isinstance(error, json.JSONDecodeError | UnicodeDecodeError):
         return f"it is not JSON ({text})"
     if isinstance(error, FileNotFoundError):
@@ -229,14 +257,26 @@ def _material(given: Any) -> tuple[Material, Any]:
         return made, given.baseColorTexture
     texture = getattr(given, "image", None)
     name = str(getattr(given, "name", None) or "")
+    emission = _emission(getattr(given, "kwargs", None) or {})
     diffuse = np.asarray(getattr(given, "diffuse", (204, 204, 204)), np.float64)[:3] / 255
     # trimesh's stand-in for what names no material is grey, and has a texture of 2 by 2 where there are coordinates.
     if not getattr(given, "kwargs", None) and np.allclose(diffuse, 0.4, atol=0.01):
         if texture is None or max(texture.size) <= 2:
             return Material(), None
     if texture is not None:
-        return Material((1.0, 1.0, 1.0), name=name), texture
-    return Material(_tuple(diffuse.clip(0, 1)), name=name), None
+        return Material((1.0, 1.0, 1.0), emission=emission, name=name), texture
+    return Material(_tuple(diffuse.clip(0, 1)), emission=emission, name=name), None
+
+
+def _emission(given: Mapping[str, Any]) -> tuple[float, float, float]:
+    """`Ke` of a material of OBJ: radiance; none where it is missing or no three numbers."""
+    try:
+        values = np.asarray([float(v) for v in np.ravel(given.get("ke", ()))])
+    except (TypeError, ValueError):
+        return (0.0, 0.0, 0.0)
+    if values.shape != (3,) or not (np.isfinite(values) & (values >= 0)).all():
+        return (0.0, 0.0, 0.0)
+    return _tuple(values)
 
 
 def _factor(value: Any, otherwise: tuple[float, float, float]) -> tuple[float, float, float]:

@@ -22,8 +22,8 @@ def save_image(path: str | os.PathLike[str], image: ArrayLike) -> None:
     Parameters
     ----------
     path : path
-        ``.png`` (sRGB transfer, 8 bits; values outside [0, 1] are clipped), ``.exr`` (float32, linear), or ``.hdr``
-        (Radiance RGBE, linear, three channels).
+        ``.png`` (sRGB transfer, 8 bits; values outside [0, 1] are clipped, not exposed and tone-mapped as `Frame.save`
+        does), ``.exr`` (float32, linear), or ``.hdr`` (Radiance RGBE, linear, three channels).
     image : array_like, shape (H, W) or (H, W, C) with C = 1, 3, 4
         Linear values, row 0 the top; a fourth channel is alpha, and the others are premultiplied by it. An array of
         uint8 is a picture already encoded, and goes to PNG as it is.

@@ -27,7 +27,8 @@ class Mesh:
     faces : array_like of integers, shape (F, 3)
         Indices of vertices, counter-clockwise seen from outside. Held as int32.
     normals : array_like, shape (V, 3), optional
-        Shading normals, of unit length; None shades by `vertex_normals`.
+        Shading normals, of unit length; None shades by `vertex_normals`. Where one is not finite or zero, as
+        `vertex_normals` may leave them, that of the face takes its place.
     uvs : array_like, shape (V, 2), optional
         Texture coordinates; (0, 0) is the bottom left corner.
     colors : array_like, shape (V, 3), optional
@@ -40,7 +41,8 @@ class Mesh:
     TypeError
         If an array is not of numbers, or indices are not integers.
     ValueError
-        If a shape does not fit, a position or normal is not finite, or an index is out of range: the first is named.
+        If a shape does not fit, a position, texture coordinate or colour is not finite, or an index is out of range:
+        the first is named.
 
     Examples
     --------

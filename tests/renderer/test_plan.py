@@ -392,3 +392,20 @@ def test_rays_stand_in_for_what_was_measured_where_no_map_sees_enough():
     # What was measured of rays themselves stays.
     kept = sl.plan(scene, (64, 36), max_error=0.02, evidence=Study("ray_traced", samples=8)).find("shadow")
     assert kept.settings["samples"] == 8 and "measured" in kept.reason
+
+
+def test_what_is_not_looked_for_is_said():
+    def left(**of):
+        return {x.name for x in sl.plan(Scene([GROUND, BOX], AREA, CAMERA, **of)).left_out}
+
+    assert {"ambient occlusion", "indirect light"} <= left(background=(0.1, 0.1, 0.1))
+    assert "ambient occlusion" not in left(background=(0, 0, 0))
+
+
+def test_evidence_says_where_it_was_measured():
+    from shadelab import study
+
+    scene = Scene([GROUND, BOX], AREA, CAMERA)
+    fast = {"size": (48, 27), "rounds": 1, "patience": 0.0, "cache": False, "techniques": ["hard"], "causes": False}
+    result = study.run("soft shadows", {"mine": scene}, **fast)
+    assert "on mine at 48 × 27: error" in sl.plan(scene, evidence=result, max_error=9.0).find("shadow").reason

@@ -1,5 +1,7 @@
 """Models from files: geometry, transforms, normals and base colours as trimesh wrote them; broken files in one line."""
 
+import json
+
 import numpy as np
 import pytest
 import shadelab as sl
@@ -134,3 +136,37 @@ def test_a_directory_is_no_model(tmp_path):
     (tmp_path / "d.obj").mkdir()
     with pytest.raises(IsADirectoryError, match=r"d\.obj: is a directory"):
         load(tmp_path / "d.obj")
+
+
+def test_what_obj_says_shines_does(tmp_path):
+    (tmp_path / "a.mtl").write_text("newmtl glow\nKd 0.5 0.5 0.5\nKe 5 4 3\nnewmtl odd\nKd 0.1 0.2 0.3\nKe 5 -4 nan\n")
+    triangle = "mtllib a.mtl\nv 0 0 0\nv 1 0 0\nv 0 1 0\nusemtl {}\nf 1 2 3\n"
+    for name, expected in (("glow", (5.0, 4.0, 3.0)), ("odd", (0.0, 0.0, 0.0))):
+        (tmp_path / "a.obj").write_text(triangle.format(name))
+        assert load(tmp_path / "a.obj", stage=False).instances[0].materials[0].emission == expected
+
+
+@pytest.mark.parametrize("suffix", ["glb", "gltf"])
+def test_lights_and_cameras_of_a_file_are_said_to_be_left(ball, suffix, tmp_path):
+    path = tmp_path / f"lit.{suffix}"
+    ball.export(path)
+    data = path.read_bytes()
+    length = int.from_bytes(data[12:16], "little") if suffix == "glb" else len(data)
+    start = 20 if suffix == "glb" else 0
+    tree = json.loads(data[start : start + length])
+    tree["extensions"] = {"KHR_lights_punctual": {"lights": [{"type": "point"}]}}
+    tree["cameras"] = [{"type": "perspective", "perspective": {"yfov": 1.0, "znear": 0.1}}]
+    text = json.dumps(tree).encode()
+    text += b" " * (-len(text) % 4)
+    if suffix == "glb":
+        total = (len(data) - length + len(text)).to_bytes(4, "little")
+        text = data[:8] + total + len(text).to_bytes(4, "little") + data[16:20] + text + data[start + length :]
+    path.write_bytes(text)
+    with pytest.warns(UserWarning, match="its lights and cameras are not read"):
+        load(path)
+
+
+def test_a_file_that_is_no_text_is_said_to_be_none(tmp_path):
+    (tmp_path / "x.obj").write_bytes(bytes(range(128, 256)) * 8)
+    with pytest.raises(ValueError, match=r"x\.obj: (?!.*charset)"):
+        load(tmp_path / "x.obj")

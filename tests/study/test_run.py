@@ -1,5 +1,7 @@
 """`run` on synthetic candidates: what it measures is what was put in."""
 
+import pickle
+
 import numpy as np
 import pytest
 import toy
@@ -277,3 +279,10 @@ def test_functions_count_with_what_they_name_and_close_over():
     before = references.digest(by_name)
     space["helper"] = other
     assert before != references.digest(by_name)
+
+
+def test_a_study_is_told_in_a_line_and_survives_pickling():
+    result = study.run("fresnel", rounds=1, patience=0.0)
+    assert repr(result).startswith("Study('fresnel', ") and len(repr(result)) < 80
+    again = pickle.loads(pickle.dumps(result))
+    assert again == result and again.table() == result.table()

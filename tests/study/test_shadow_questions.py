@@ -132,7 +132,7 @@ def test_bytes_are_no_milliseconds(tmp_path):
     assert choice.ms == record.counters["ms"] == choice.ms_interval.value < 1e4
     scene = _visibility.BREAKING["contact"]()
     plan = sl.plan(scene, (48, 27), max_error=0.9, evidence=result)
-    said = next(p.reason for p in plan.passes if "measured: error" in p.reason)
+    said = next(p.reason for p in plan.passes if "measured on contact at 48 × 27: error" in p.reason)
     assert "MB" in said and f"{choice.ms:.3g} ms" in said and "65536" not in said and "6.55e+04" not in said
     with pytest.raises(ValueError, match="budget_ms"):
         sl.plan(scene, (48, 27), budget_ms=50, evidence=result)
@@ -213,3 +213,10 @@ def test_colours_count_by_their_luminance(tmp_path):
     result = study.run(study.Question(**{**vars(question), "candidates": few}), "contact", candidates=given, **FAST)
     white, green = (next(r for r in result.records if r.technique == n) for n in ("white", "green"))
     assert white.error.value < 1e-6 and 0.1 < green.error.value < 0.3
+
+
+@pytest.mark.parametrize("name", ["soft shadows", "shadow bias", "shadow aliasing", "shadow memory"])
+@pytest.mark.parametrize("thing", [sl.mesh.icosphere(1), [], None], ids=["a mesh", "a list", "a name's nothing"])
+def test_what_is_no_scene_is_named(name, thing):
+    with pytest.raises((TypeError, ValueError), match="scene: expected"):
+        study.run(name, {"mine": thing}, **FAST)

@@ -46,7 +46,10 @@ def picked(evidence: Any, max_error: float | None, budget_ms: float | None) -> t
     price = f"{choice.ms:.3g} ms"
     if unit != "ms":
         price += f" and {choice.cost_interval.value * scale:.3g} {unit}"
-    reason = f"measured: error {choice.error:.3g} in {price}, the choice for {wanted}"
+    cases = getattr(evidence, "cases", ())
+    where = "; ".join(f"{c.name} at {c.size[0]} × {c.size[1]}" for c in cases[:2])
+    where += f" and {len(cases) - 2} more" if len(cases) > 2 else ""
+    reason = f"measured{f' on {where}' if where else ''}: error {choice.error:.3g} in {price}, the choice for {wanted}"
     return choice.technique, dict(choice.knobs), reason
 
 

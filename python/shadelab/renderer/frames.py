@@ -38,6 +38,10 @@ class Frame:
     """Seconds by pass."""
     plan: Plan
 
+    def __repr__(self) -> str:
+        height, width = self.face.shape
+        return f"Frame({width} × {height}, {len(self.lit)} lights, passes {', '.join(self.times)})"
+
     def display(self, exposure: float | None = None, tone_map: str = "aces") -> NDArray[np.uint8]:
         """The picture for a screen: exposed, tone-mapped, sRGB-encoded.
 
@@ -57,15 +61,7 @@ class Frame:
         ValueError
             If the exposure is not positive or there is no such tone map.
         """
-        if exposure is None:
-            bright = color.luminance(self.radiance)
-            peak = float(np.quantile(bright[np.isfinite(bright)], 0.98)) if bright.size else 0.0
-            factor = 0.8 / peak if peak > 0 else 1.0
-        else:
-            factor = _arrays.number("exposure", exposure, above=0.0)
-        mapped = color.tone_map(self.radiance * np.float32(factor), tone_map)  # type: ignore[arg-type]
-        encoded = color.encode_transfer(np.clip(np.nan_to_num(mapped), 0, 1))
-        return np.asarray(encoded * 255 + 0.5, np.uint8)
+        return displayed(self.radiance, exposure, tone_map)
 
     def save(self, path: str | Path) -> None:
         """Write the picture: PNG as `display` shows it, EXR and HDR as radiance.
@@ -90,15 +86,32 @@ class Frame:
             scene.save_image(path, self.radiance)
 
     def _repr_png_(self) -> bytes:
-        """The displayed picture as a PNG file (ISO/IEC 15948), which Jupyter shows."""
-        pixels = self.display()
-        height, width = pixels.shape[:2]
-        # Each row begins with its filter: 0, none.
-        rows = np.concatenate([np.zeros((height, 1), np.uint8), pixels.reshape(height, -1)], axis=1)
+        """The displayed picture as a PNG file, which Jupyter shows."""
+        return png(self.display())
 
-        def chunk(kind: bytes, data: bytes) -> bytes:
-            return struct.pack(">I", len(data)) + kind + data + struct.pack(">I", zlib.crc32(kind + data))
 
-        header = struct.pack(">IIBBBBB", width, height, 8, 2, 0, 0, 0)
-        body = chunk(b"IHDR", header) + chunk(b"IDAT", zlib.compress(rows.tobytes(), 6)) + chunk(b"IEND", b"")
-        return b"\x89PNG\r\n\x1a\n" + body
+def displayed(radiance: Floats, exposure: float | None = None, tone_map: str = "aces") -> NDArray[np.uint8]:
+    """Any radiance as `Frame.display` shows that of a frame."""
+    if exposure is None:
+        bright = color.luminance(radiance)
+        peak = float(np.quantile(bright[np.isfinite(bright)], 0.98)) if bright.size else 0.0
+        factor = 0.8 / peak if peak > 0 else 1.0
+    else:
+        factor = _arrays.number("exposure", exposure, above=0.0)
+    mapped = color.tone_map(radiance * np.float32(factor), tone_map)  # type: ignore[arg-type]
+    encoded = color.encode_transfer(np.clip(np.nan_to_num(mapped), 0, 1))
+    return np.asarray(encoded * 255 + 0.5, np.uint8)
+
+
+def png(pixels: NDArray[np.uint8]) -> bytes:
+    """A PNG file (ISO/IEC 15948) of three channels."""
+    height, width = pixels.shape[:2]
+    # Each row begins with its filter: 0, none.
+    rows = np.concatenate([np.zeros((height, 1), np.uint8), pixels.reshape(height, -1)], axis=1)
+
+    def chunk(kind: bytes, data: bytes) -> bytes:
+        return struct.pack(">I", len(data)) + kind + data + struct.pack(">I", zlib.crc32(kind + data))
+
+    header = struct.pack(">IIBBBBB", width, height, 8, 2, 0, 0, 0)
+    body = chunk(b"IHDR", header) + chunk(b"IDAT", zlib.compress(rows.tobytes(), 6)) + chunk(b"IEND", b"")
+    return b"\x89PNG\r\n\x1a\n" + body

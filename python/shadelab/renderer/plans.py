@@ -194,11 +194,11 @@ def surroundings(
     scene: Any, arrays: Any, where: Any, max_error: float | None, passes: list[Pass], left_out: list[LeftOut]
 ) -> tuple[list[Pass], list[LeftOut]]:
     if scene.environment is not None:
-        passes.append(Pass("environment", "a panorama shines on everything; nothing hides it here", {"samples": 64}))
+        passes.append(Pass("environment", "a panorama shines on everything, as if nothing hid it", {"samples": 64}))
     if np.max(scene.background) > 0:
         bound = DEFAULT_ERROR if max_error is None else max_error
         shares, error = reflectances(arrays, where, scene.background)
-        why = "the background shines on everything; nothing hides it from anything here"
+        why = "the background shines on everything, as if nothing hid it"
         if error <= bound:
             why += f"; one reflectance for each material, error {error:.1%}"
             passes.append(Pass("ambient", why, {"reflectances": shares}))
@@ -207,6 +207,10 @@ def surroundings(
             passes.append(Pass("ambient", why, {"samples": 64}))
     else:
         left_out.append(LeftOut("ambient", "the background is black"))
+    if scene.environment is not None or np.max(scene.background) > 0:
+        why = "what hides the sky from surfaces is not looked for, in no bound on the error: "
+        left_out.append(LeftOut("ambient occlusion", why + "an AmbientLight is hidden, and path_trace has it for all"))
+    left_out.append(LeftOut("indirect light", "surfaces send no light to each other: path_trace has it"))
     if np.max(arrays.emission, initial=0.0) > 0:
         passes.append(Pass("emission", "some materials shine"))
     else:

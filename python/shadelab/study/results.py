@@ -72,6 +72,14 @@ class Study:
         default=None, repr=False, compare=False
     )
 
+    def __repr__(self) -> str:
+        settings = len({r.setting for r in self.records})
+        return f"Study({self.question!r}, {settings} settings in {len(self.cases)} cases)"
+
+    def __getstate__(self) -> dict[str, Any]:
+        """All but the function that makes pictures: what it needs is not of the study."""
+        return {**self.__dict__, "pictures": None}
+
     # What was measured, drawn together --------------------------------------------------------------------------
 
     def of(self, scene: str | None = None, view: str | None = None) -> Study:

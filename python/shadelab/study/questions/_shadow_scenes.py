@@ -13,7 +13,7 @@ from ...light import RectLight
 from ...mesh import Mesh
 from ...scene import Camera, Instance, Scene
 
-__all__ = ["SCENES", "views"]
+__all__ = ["SCENES", "own_camera", "views"]
 
 
 def _at(shape: Mesh, x: float, y: float, z: float, turn: float = 0.0) -> Instance:
@@ -102,10 +102,18 @@ SCENES: Mapping[str, Callable[[], Scene]] = {
 """The scenes by name."""
 
 
+def own_camera(name: str, made: Any) -> Mapping[str, Camera]:
+    """The one view of a scene that its own camera has."""
+    if not isinstance(made, Scene):
+        raise TypeError(f"scene: expected {name!r} to be a Scene, got {type(made).__name__}")
+    return {"": made.camera}
+
+
 def views(name: str, made: Scene) -> Mapping[str, Any]:
     """A scene's own camera; around the default scene two more, steep and grazing."""
+    own = own_camera(name, made)
     if name != "default":
-        return {"": made.camera}
+        return own
     camera = made.camera
     eye, target = np.asarray(camera.eye, float), np.asarray(camera.target, float)
     away = eye - target

@@ -13,7 +13,7 @@ from ... import color, shadow
 from ...light import PointLight
 from ...scene import Camera, Scene
 from ..question import Case, Mask, Metric
-from ._shadow_scenes import SCENES
+from ._shadow_scenes import SCENES, own_camera
 from .soft_shadows import Inputs, _setup, _widened
 
 __all__ = [
@@ -116,12 +116,12 @@ def display(inputs: Inputs, value: Array) -> Array:
     return np.asarray((shown * 255 + 0.5).astype(np.uint8))
 
 
-def near_and_far(name: str, scene: Scene) -> Mapping[str, Camera]:
+def near_and_far(name: str, scene: Any) -> Mapping[str, Camera]:
     """The scene's own camera, and one that has gone three fifths of the way towards what it looks at."""
-    camera = scene.camera
+    camera = own_camera(name, scene)[""]
     eye, target = np.asarray(camera.eye, float), np.asarray(camera.target, float)
-    closer = tuple(float(x) for x in eye + 0.6 * (target - eye))
-    return {"far": camera, "near": replace(camera, eye=closer)}
+    x, y, z = (eye + 0.6 * (target - eye)).tolist()
+    return {"far": camera, "near": replace(camera, eye=(x, y, z))}
 
 
 def line(text: str) -> str:

@@ -9,6 +9,7 @@ from numpy.typing import NDArray
 
 from ... import shadow
 from ..question import Candidate, Mask, Metric, Question
+from ._shadow_scenes import own_camera
 from ._visibility import BREAKING, display, facing, line, pointlike, spread, traced
 from .soft_shadows import Inputs, _counters, _maps
 
@@ -110,7 +111,7 @@ def question() -> Question:
         ],
         Mask("all that faces the light", lambda reference, inputs: facing(inputs), "", "nothing faces the light"),
         setup=pointlike,
-        views=lambda name, scene: {"": scene.camera},
+        views=own_camera,
         compose=spread,
         also={"acne %": _acne, "detached %": _detached},
         display=display,

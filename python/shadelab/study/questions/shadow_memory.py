@@ -10,6 +10,7 @@ from numpy.typing import NDArray
 from ... import shadow
 from ..question import Candidate, Mask, MonteCarlo, Question
 from ._fields import field_counters, field_lit
+from ._shadow_scenes import own_camera
 from ._visibility import BREAKING, display, line, lit_error, spread
 from .soft_shadows import (
     _MASK_ABOUT,
@@ -152,7 +153,7 @@ def question() -> Question:
         ],
         Mask("penumbrae and a 60th of the height around", _penumbrae, line(_MASK_ABOUT), "no pixel is in penumbra"),
         setup=_setup,
-        views=lambda name, scene: {"": scene.camera},
+        views=own_camera,
         compose=spread,
         display=display,
         size=(320, 180),
