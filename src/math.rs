@@ -24,6 +24,7 @@
 //! W. Cody, W. Waite, *Software Manual for the Elementary Functions*, 1980 (reduction of the argument in parts);
 //! T. Dekker, *A floating-point technique for extending the available precision*, 1971 (products with remainder).
 
+mod erf;
 pub mod exact;
 mod map;
 mod minimax;
@@ -31,6 +32,7 @@ mod pow;
 #[cfg(test)]
 mod tests;
 
+pub use erf::{bell, inverse_bell};
 pub use map::{Binary, Unary, binary, unary};
 pub use pow::pow;
 

@@ -10,6 +10,7 @@
 //! C. Schlick, *An inexpensive BRDF model for physically-based rendering*, 1994; R. L. Cook, K. E. Torrance, *A
 //! reflectance model for computer graphics*, 1982 (V-cavities).
 
+use super::beckmann::{self, visible_slopes};
 use crate::math;
 use crate::real::{Lanes, Real};
 use crate::vec::Vec3;
@@ -171,19 +172,17 @@ impl<V: Lanes> Microfacets<V> {
         sum * sum.num(0.5) * (sum.num(1.0) + three / (sum.num(10.0) + (sum.num(4.0) - three).sqrt()))
     }
 
-    /// A unit normal for `wo` above the horizon, from two numbers of [0, 1): of GGX those visible from `wo`, of
-    /// Beckmann all.
+    /// A unit normal that `wo` above the horizon sees, from two numbers of [0, 1).
     #[inline(always)]
     pub fn sample(&self, wo: Vec3<V>, u: [V; 2]) -> Vec3<V> {
         let (zero, one) = (wo.z.num(0.0), wo.z.num(1.0));
-        let turn = V::select(one.num(0.5).less(u[0]), u[0] - one, u[0]);
-        let (sin, cos) = math::sin_cos_turns(turn);
         let (ax, ay) = (self.alpha_x, self.alpha_y);
         if self.shape == Shape::Beckmann {
-            // tan² of the stretched normal is exponentially distributed.
-            let r = (-math::ln(one - u[1])).sqrt();
-            return Vec3::new(ax * r * cos, ay * r * sin, one).normalize();
+            let [x, y] = visible_slopes(Vec3::new(ax * wo.x, ay * wo.y, wo.z), u);
+            return Vec3::new(-ax * x, -ay * y, one).normalize();
         }
+        let turn = V::select(one.num(0.5).less(u[0]), u[0] - one, u[0]);
+        let (sin, cos) = math::sin_cos_turns(turn);
         // In the space where the surface is as rough as a hemisphere, visible normals are halfway between `wo` and the
         // points of the cap that it sees: z from 1 down to −cos.
         let stretched = Vec3::new(ax * wo.x, ay * wo.y, wo.z).normalize();
@@ -196,13 +195,17 @@ impl<V: Lanes> Microfacets<V> {
     }
 
     /// The density of [`Microfacets::sample`] per solid angle of the normal, over |wo·h|, for an unnormalised half
-    /// vector above the horizon.
+    /// vector above the horizon. Of Beckmann by Smith's exact function, so that it is one in all; light is masked by the
+    /// rational form.
     #[inline(always)]
     pub fn density_over_cosine(&self, wo: Vec3<V>, half: Vec3<V>) -> V {
         let d = self.distribution(half);
         match self.shape {
             Shape::Ggx => d / self.smith(wo),
-            Shape::Beckmann => d * half.z / wo.dot(half).abs(),
+            Shape::Beckmann => {
+                let (x, y) = (self.alpha_x * wo.x, self.alpha_y * wo.y);
+                d / beckmann::smith(wo.z, (x * x + y * y).sqrt())
+            }
         }
     }
 }

@@ -9,6 +9,7 @@
 //! - [`plastic`]: a diffuser under a smooth coat
 //! - [`ndf`]: distributions of normals beyond GGX's
 //! - [`ggx`]: rough mirrors
+//! - `microfacets`, `beckmann`: facets, and the normals of them that are seen
 //! - [`conductor`], [`dielectric`]: smooth metal, smooth glass
 //! - [`rough_conductor`], [`rough_dielectric`]: both of microscopic facets
 //! - [`metallic_roughness`]: the material of real-time shading and path tracing alike
@@ -19,6 +20,7 @@
 //! - [`Bsdf`]: any of them, as kernels hold it
 
 mod arrays;
+mod beckmann;
 mod bsdf;
 pub mod compensated_glass;
 mod compensated_lobes;

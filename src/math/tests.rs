@@ -195,6 +195,50 @@ fn angle_is_atan2_of_the_upper_half_plane() {
     assert!(angle(0.0f64, 0.0).is_nan() && angle(f64::NAN, 1.0).is_nan() && angle(1.0, f64::NAN).is_nan());
 }
 
+#[test]
+fn bells_are_the_integrals_of_their_height() {
+    // 1 + erf x by mpmath, 40 digits.
+    let known = [
+        (-5.0, 1.5374597944280349e-12),
+        (-2.0, 0.0046777349810472658),
+        (-0.5, 0.47950012218695346),
+        (0.0, 1.0),
+        (0.75, 1.7111556336535151),
+        (3.0, 1.9999779095030014),
+    ];
+    for (x, area) in known {
+        let (got, height) = bell(x);
+        assert!(ulps64(got, area) <= 4.0 + x * x && ulps64(height, f64::exp(-x * x)) <= 2.0, "bell({x})");
+        let got = bell(x as f32).0;
+        assert!(ulps32(got, area) <= 4.0 + x * x, "bell({x}) in single: {got:e}");
+    }
+    assert_eq!((bell(f64::INFINITY), bell(f64::NEG_INFINITY)), ((2.0, 0.0), (0.0, 0.0)));
+    assert!(bell(f64::NAN).0.is_nan());
+}
+
+#[test]
+fn bells_are_turned_round() {
+    let mut random = Random(5);
+    for _ in 0..20_000 {
+        let end = 10f64.powf(random.between(-6.0, 9.0));
+        let (b, u) = (1.0 / (1.0 + end), random.between(0.0, 1.0));
+        let a = end * b;
+        let sum = |x: f64| {
+            let (area, height) = bell(x);
+            a * area + b * height / PI.sqrt()
+        };
+        let x = inverse_bell(a, b, end, sum(end), u);
+        assert!((sum(x) / sum(end) - u).abs() < 1e-13, "{end:e} {u}: {x}");
+        let (a, b, end, u) = (a as f32, b as f32, end as f32, u as f32);
+        let (area, height) = bell(end);
+        let total = a * area + b * height / std::f32::consts::PI.sqrt();
+        let x = inverse_bell(a, b, end, total, u);
+        let (area, height) = bell(x);
+        let found = (a * area + b * height / std::f32::consts::PI.sqrt()) / total;
+        assert!((found - u).abs() < 1e-6, "{end:e} {u}: {x}, {found} in single");
+    }
+}
+
 fn special_cases<T: Real>() {
     let of = T::of;
     let (zero, inf, nan) = (of(0.0), T::INFINITY, T::NAN);

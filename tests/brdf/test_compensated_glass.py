@@ -28,7 +28,7 @@ def test_all_light_comes_back_from_either_side(alpha, eta, dtype, compensation):
 @pytest.mark.parametrize("masking", ["separable", "height_correlated", "schlick", "v_cavity"])
 @pytest.mark.parametrize("distribution", ["ggx", "beckmann"])
 def test_other_facets_are_compensated_too(distribution, masking):
-    """Of Beckmann's facets all are drawn, so that weights scatter."""
+    # Quadrature over many a slope: from within, where light is totally reflected, it is off by 0.35 %.
     model = brdf.RoughDielectric(0.6, 1.5, distribution=distribution, masking=masking, compensation="kulla_conty")
     for side in (1, -1):
         assert abs(common.lost_flux(model, side, 1 << 15)) < 0.004

@@ -25,11 +25,11 @@ def test_values_are_mitsubas(distribution, alpha, alpha_y):
     keep = wi[:, 2] > 0.02
     wi, wo = wi[keep].astype(float), wo[keep].astype(float)
     rgb = {n: {"type": "rgb", "value": list(v)} for n, v in (("eta", ETA), ("k", K))}
-    # Beckmann's normals are all drawn here; Mitsuba's own density of visible ones follows another masking.
     description = {"type": "roughconductor", "distribution": distribution, "alpha_u": alpha, "alpha_v": alpha_y, **rgb}
-    description["sample_visible"] = distribution == "ggx"
-    # Mitsuba's half vector is normalised in single precision: 1e-7 of slope over alpha, doubled by the lobe.
-    common.agrees_with_mitsuba(model, description, wi, wo, 1e-5 + 2e-6 / min(alpha, alpha_y))
+    # Mitsuba's half vector is normalised in single precision: 1e-7 of slope over alpha, doubled by the lobe. Its pdf
+    # of Beckmann's visible normals is by the rational masking, 0.35 % off; ours by the exact one.
+    rtol = 1e-5 + 2e-6 / min(alpha, alpha_y)
+    common.agrees_with_mitsuba(model, description, wi, wo, rtol, 4e-3 if distribution == "beckmann" else rtol)
 
 
 @pytest.mark.parametrize("distribution", ["ggx", "beckmann"])
@@ -48,21 +48,13 @@ def test_the_model_is_reciprocal(distribution, masking, dtype):
 def test_the_density_integrates_to_one(distribution, cosine):
     model = brdf.RoughConductor(0.3, ETA, K, alpha_y=0.5, distribution=distribution)
     sum_ = common.total(lambda w: model.pdf(w, common.at(cosine, 0.4)))
-    # Of Beckmann's normals those that face away from the eye bring nothing: at grazing angles nearly half.
-    if distribution == "ggx":
-        assert sum_ == pytest.approx(1, abs=2e-4)
-    else:
-        assert sum_ <= 1 + 2e-4
+    assert sum_ == pytest.approx(1, abs=2e-4)
 
 
 @pytest.mark.parametrize("distribution", ["ggx", "beckmann"])
 @pytest.mark.parametrize(("alpha", "alpha_y"), [(0.25, 0.25), (0.2, 0.7), (1.0, 1.0)])
 @pytest.mark.parametrize("cosine", [0.95, 0.3])
 def test_draws_follow_the_density(distribution, alpha, alpha_y, cosine):
-    if distribution == "beckmann" and cosine < 0.9:
-        # Drawn without regard to the eye: the density has a pole at -wo, which cells do not resolve.
-        cosine = 0.7
-        alpha = alpha_y = 0.25
     model = brdf.RoughConductor(alpha, ETA, K, alpha_y=alpha_y, distribution=distribution)
     assert common.samples_follow(model, common.at(cosine, 0.7)) > 1e-4
 
@@ -77,6 +69,23 @@ def test_no_more_comes_back_than_came(distribution, masking):
             weight = model.sample(np.broadcast_to(common.at(cosine), (20000, 3)), u).weight
             # Three deviations of the mean.
             assert weight.mean() <= 1 + 3 * weight.std() / np.sqrt(20000) + 1e-5
+            # Of normals that are seen no draw brings more; Beckmann's masking is rational, 0.35 % off.
+            if masking != "v_cavity":
+                assert weight.max() <= (1.004 if distribution == "beckmann" else 1 + 1e-9)
+
+
+@pytest.mark.parametrize("distribution", ["ggx", "beckmann"])
+@pytest.mark.parametrize("dtype", [np.float32, np.float64])
+@pytest.mark.parametrize("cosine", [1.0, 0.5, 1e-3, 1e-6])
+def test_draws_at_the_ends_are_directions(distribution, dtype, cosine):
+    last = 1 - np.finfo(dtype).epsneg
+    u = np.array([[a, b, 0.5] for a in (0, 0.5, last) for b in (0, 1e-30, 0.5, last)], dtype)
+    for alpha in (0.05, 1.0):
+        model = brdf.RoughConductor(alpha, ETA, K, distribution=distribution)
+        draws = model.sample(np.broadcast_to(common.at(cosine).astype(dtype), (len(u), 3)), u)
+        # Some lie below the horizon, and weigh nothing.
+        assert np.isfinite(draws.weight).all() and not np.isnan(draws.pdf).any()
+        np.testing.assert_allclose(np.linalg.norm(draws.wi, axis=-1), 1, rtol=20 * np.finfo(dtype).eps)
 
 
 @pytest.mark.parametrize("model", [brdf.RoughConductor, brdf.RoughDielectric])

@@ -25,15 +25,16 @@ def test_values_are_mitsubas(distribution, alpha, eta):
         "alpha": alpha,
         "int_ior": eta,
         "ext_ior": 1.0,
-        "sample_visible": distribution == "ggx",
+        "sample_visible": True,
     }
     value, density = common.mitsuba_bsdf(description, wi, wo)
     own = (model.eval(wi, wo) * np.abs(wi[:, 2:])).mean(-1)
     # Mitsuba's half vector in single precision, 1e-7 / (η - 1) off in slope.
     rtol = 1e-5 + 1e-6 / (alpha * abs(eta - 1))
     np.testing.assert_allclose(own, value.mean(-1), rtol=rtol, atol=1e-6 * value.max())
-    if distribution == "ggx":
-        np.testing.assert_allclose(model.pdf(wi, wo), density, rtol=rtol, atol=1e-6 * density.max())
+    # Mitsuba's density of Beckmann's visible normals is by the rational masking, 0.35 % off; ours by the exact one.
+    rtol = 4e-3 if distribution == "beckmann" else rtol
+    np.testing.assert_allclose(model.pdf(wi, wo), density, rtol=rtol, atol=1e-6 * density.max())
 
 
 @pytest.mark.parametrize("distribution", ["ggx", "beckmann"])

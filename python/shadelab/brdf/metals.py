@@ -87,11 +87,13 @@ class RoughConductor(_Rough):
 
     Notes
     -----
-    Without compensation what mirrors hide from each other is lost (`white_furnace` says how much). GGX normals are
-    drawn as they are seen from `wo`, so that weights are at most one; of Beckmann's all are drawn. With two widths the
-    compensation takes the mean of those that directions about see: where one is ten times the other, up to 2 % of white
-    metal's light is still lost. In float32 a half vector does not resolve Beckmann facets narrower than 0.01 at cosines
-    below 1e-3, and light is lost there: 1 % at alpha = 1e-3, most of it at 1e-5. GGX loses none.
+    Without compensation what mirrors hide from each other is lost (`white_furnace` says how much). Normals are
+    drawn as they are seen from `wo`, so that weights are at most one (of Beckmann's 1.004: see
+    `masking_shadowing`). A draw of GGX takes some 90 ns on one thread, one of Beckmann, whose slopes are found by
+    Newton's steps, 330. With two widths the compensation takes the mean of those that directions about see: where
+    one is ten times the other, up to 2 % of white metal's light is still lost. In float32 a half vector does not
+    resolve Beckmann facets narrower than 0.01 at cosines below 1e-3, and light is lost there: 1 % at alpha = 1e-3,
+    most of it at 1e-5. GGX loses none.
 
     References
     ----------
