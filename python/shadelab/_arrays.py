@@ -235,6 +235,9 @@ def number(
         if isinstance(value, np.complexfloating) or (isinstance(value, np.ndarray) and value.dtype.kind == "c"):
             # NumPy would drop the imaginary part with a warning.
             raise TypeError
+        if isinstance(value, str | bytes | bytearray):
+            # Python would read digits.
+            raise TypeError
         x = float(value)
     except (TypeError, ValueError):
         raise TypeError(f"{name}: expected a number, got {type(value).__name__}") from None

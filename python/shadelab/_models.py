@@ -58,6 +58,8 @@ def load(path: str | os.PathLike[str], *, stage: bool = True) -> Scene:
     ------
     ImportError
         If trimesh is not installed (``pip install 'shadelab[io]'``).
+    TypeError
+        If an argument has the wrong type.
     FileNotFoundError, IsADirectoryError
         If there is no such file, or it is a directory.
     ValueError
@@ -77,8 +79,9 @@ def load(path: str | os.PathLike[str], *, stage: bool = True) -> Scene:
     """
     from .scene import Instance, Material, Scene, fit_camera
 
+    staged = _arrays.flag("stage", stage)
     things = _instances(_arrays.path("path", path))
-    if not stage:
+    if not staged:
         return Scene(things)
     from .light import RectLight
 

@@ -57,7 +57,7 @@ def save_image(path: str | os.PathLike[str], image: ArrayLike) -> None:
     """
     path = _arrays.path("path", path)
     suffix = _suffix(path)
-    array = np.asarray(image)
+    array = _arrays.array("image", image)
     if array.dtype == np.uint8 and suffix == ".png":
         if array.ndim not in (2, 3):
             raise ValueError(f"image: expected shape (H, W) or (H, W, C), got {array.shape}")

@@ -170,3 +170,11 @@ def test_a_file_that_is_no_text_is_said_to_be_none(tmp_path):
     (tmp_path / "x.obj").write_bytes(bytes(range(128, 256)) * 8)
     with pytest.raises(ValueError, match=r"x\.obj: (?!.*charset)"):
         load(tmp_path / "x.obj")
+
+
+def test_digits_in_quotes_are_no_numbers_and_words_no_flags(ball, tmp_path):
+    ball.export(tmp_path / "ball.ply")
+    with pytest.raises(TypeError, match="stage: expected True or False"):
+        load(tmp_path / "ball.ply", stage="no")
+    with pytest.raises(TypeError, match="roughness: expected a number, got str"):
+        sl.scene.Material(roughness="0.3")

@@ -95,3 +95,10 @@ def test_a_missing_or_broken_file_gives_one_clear_line(suffix, tmp_path):
     path.write_bytes(path.read_bytes()[:-100])
     with pytest.raises(ValueError, match="cannot be read"):
         load_image(path)
+
+
+def test_pictures_that_are_ragged_or_nowhere_are_named(tmp_path):
+    with pytest.raises(ValueError, match="image: "):
+        save_image(tmp_path / "a.png", [[0.0], [0.0, 1.0]])
+    with pytest.raises(TypeError, match="path: expected a path"):
+        save_image(None, np.zeros((2, 2, 3)))

@@ -80,8 +80,9 @@ class Frame:
         """
         from .. import scene
 
-        if Path(path).suffix.lower() == ".png":
-            Path(path).write_bytes(self._repr_png_())
+        path = _arrays.path("path", path)
+        if path.suffix.lower() == ".png":
+            path.write_bytes(self._repr_png_())
         else:
             scene.save_image(path, self.radiance)
 

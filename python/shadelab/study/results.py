@@ -13,6 +13,7 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
+from .. import _arrays
 from . import statistics
 from .records import CaseRecord, Choice, NothingQualifies, Record, Summary, figure_text
 from .statistics import Interval
@@ -340,7 +341,7 @@ class Study:
         """
         from .report import write
 
-        return write(self, Path(directory), max_error=max_error, budget_ms=budget_ms)
+        return write(self, _arrays.path("directory", directory), max_error=max_error, budget_ms=budget_ms)
 
     # Files ------------------------------------------------------------------------------------------------------
 
