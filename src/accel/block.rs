@@ -35,6 +35,17 @@ impl<T: Real> Block<T> {
         }
         block
     }
+
+    /// Empties a lane.
+    #[inline(always)]
+    pub fn clear(&mut self, lane: usize) {
+        self.faces[lane] = -1;
+        for vertex in 0..3 {
+            for k in 0..3 {
+                self.vertices[vertex][k][lane] = T::NAN;
+            }
+        }
+    }
 }
 
 /// Tests the triangles of a leaf, and keeps the nearest hit. With `ANY`, returns true at the first.

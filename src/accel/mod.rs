@@ -16,6 +16,7 @@ mod halving;
 #[cfg_attr(not(feature = "python"), allow(dead_code))] // as those of `query`
 pub(crate) mod lists;
 mod met;
+mod radix;
 #[cfg_attr(not(feature = "python"), allow(dead_code))] // points come from Python alone
 pub(crate) mod pseudonormals;
 mod ray;

@@ -212,10 +212,35 @@ def test_every_builder_holds_whatever_the_mesh(method, dtype):
         assert same_bits(hit, sl.accel.brute_force(p, f, at - 1e-3 * d, d)), name
 
 
+@pytest.mark.parametrize("crowd", ["even", "nested", "half in one cell", "all but one in one cell"])
+@pytest.mark.parametrize("dtype", [np.float32, np.float64])
+def test_morton_order_of_large_crowded_meshes(crowd, dtype):
+    """Long enough to be sorted in parts; in crowds the upper bits of many codes are equal, and the lower ones decide."""
+    rng = np.random.default_rng(15)
+    n = 60_000
+    scale = {
+        "even": np.ones(n),
+        "nested": 10.0 ** rng.uniform(-7, 0, n),
+        "half in one cell": np.where(rng.random(n) < 0.5, 1e-4, 1.0),
+        "all but one in one cell": np.where(np.arange(n) == 0, 1.0, 1e-4),
+    }[crowd]
+    p, f = soup(rng, n, np.float64, size=0.05)
+    p = (p * np.repeat(scale, 3)[:, None]).astype(dtype)
+    lbvh, sah = (sl.accel.BVH(p, f, method=method) for method in ("lbvh", "sah"))
+    d = rng.normal(size=(4000, 3))
+    o = p[rng.integers(len(p), size=4000)] - 0.1 * d * scale[-1]
+    hit = lbvh.closest_hit(o, d)
+    assert same_bits(hit, sah.closest_hit(o, d))
+    assert (hit.face >= 0).sum() > 100
+    # Without the lower bits rays would meet most of a crowd: tens of times as much.
+    boxes, triangles = (np.mean(a) / np.mean(b) for a, b in zip(lbvh.counts(o, d), sah.counts(o, d), strict=True))
+    assert boxes < 2.5 and triangles < 2.5
+
+
 @pytest.mark.parametrize("method", ["sah", "median", "lbvh"])
 def test_trees_do_not_depend_on_threads(method):
     """Large enough that lists are cut, binned and written by several tasks."""
-    p, f = soup(np.random.default_rng(12), 40_000, np.float32)
+    p, f = soup(np.random.default_rng(12), 90_000, np.float32)
     found = []
     for n in (1, 3):
         sl.set_threads(n)

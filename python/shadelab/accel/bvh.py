@@ -43,7 +43,7 @@ class BVH(PointQueries, Movable, Structure):
     Notes
     -----
     Built in parallel; the tree does not depend on the number of threads. *sah* is the best to trace. *median* builds in
-    about as long and *lbvh* in a third to half of it; random rays then take some 1.2 to 1.5 times as long. About 60 bytes
+    about as long and *lbvh* in a third of it or less; random rays then take some 1.2 to 1.5 times as long. About 60 bytes
     a face in float32, 120 in float64. The arrays are copied: later changes to them do not matter.
 
     Boxes counted are those of all children of every node visited, up to eight each.

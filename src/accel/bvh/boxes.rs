@@ -3,7 +3,7 @@
 
 use crate::accel::bounds::LARGE;
 use crate::memory;
-use crate::real::Real;
+use crate::real::{Lanes, Real};
 use crate::simd::{Simd, SimdBase, f32x8};
 use fearless_simd::{SimdCombine, SimdSplit};
 use rayon::prelude::*;
@@ -79,6 +79,19 @@ impl Relative {
         let low = bounds[0].map(|x| x.to_f64());
         let extent = (0..3).map(|k| bounds[1][k].to_f64() - low[k]).fold(0.0, f64::max);
         Relative { low, scale: if extent > 0.0 { 1.0 / extent } else { 0.0 } }
+    }
+    /// Twice the centre of a triangle, along each axis in 0 … 2.
+    #[inline(always)]
+    pub fn centre<T: Real, S: Simd>(&self, corners: [T::V4<S>; 3]) -> [f64; 3] {
+        let [a, b, c] = corners;
+        let low = Lanes::min(Lanes::min(a, b), c).to_array();
+        let high = Lanes::max(Lanes::max(a, b), c).to_array();
+        let mut centre = [0.0; 3];
+        for k in 0..3 {
+            let (low, high) = (low[k].to_f64() - self.low[k], high[k].to_f64() - self.low[k]);
+            centre[k] = (low + high) * self.scale;
+        }
+        centre
     }
     pub fn points<T: Real>(&self, positions: &[[T; 3]]) -> Vec<[f32; 3]> {
         let one = |p: &[T; 3], k: usize| ((p[k].to_f64() - self.low[k]) * self.scale) as f32;

@@ -6,6 +6,7 @@ mod build;
 pub(crate) mod closest;
 mod collapse;
 mod cut;
+mod emit;
 #[cfg_attr(not(feature = "python"), allow(dead_code))] // as above
 mod every;
 mod few;
