@@ -54,7 +54,7 @@ pub fn leaf<const ANY: bool, T: Real, S: Simd>(
     s: S,
     blocks: &[Block<T>],
     ray: &Ready<T>,
-    heading: Heading,
+    heading: &Heading,
     ignore: i32,
     hit: &mut Hit<T>,
 ) -> bool {
@@ -81,7 +81,7 @@ pub fn all<T: Real, S: Simd>(
     s: S,
     blocks: &[Block<T>],
     ray: &Ready<T>,
-    heading: Heading,
+    heading: &Heading,
     ignore: i32,
     mut each: impl FnMut(Hit<T>),
 ) {
@@ -112,7 +112,7 @@ fn test<T: Real, S: Simd>(
     s: S,
     block: &Block<T>,
     ray: &Ready<T>,
-    heading: Heading,
+    heading: &Heading,
     end: T,
 ) -> Option<Hits<T>> {
     let order = heading.order;
@@ -172,7 +172,7 @@ pub fn corner<T: Real, S: Simd>(s: S, block: &Block<T>, vertex: usize, order: [u
 
 /// The planes of triangles' own boxes that rays of a heading enter and leave through, like the corners in its order.
 #[inline(always)]
-pub fn own_box<V: Lanes>(heading: Heading, a: [V; 3], b: [V; 3], c: [V; 3]) -> ([V; 3], [V; 3]) {
+pub fn own_box<V: Lanes>(heading: &Heading, a: [V; 3], b: [V; 3], c: [V; 3]) -> ([V; 3], [V; 3]) {
     let (mut near, mut far) = (a, a);
     for i in 0..3 {
         let (low, high) = (a[i].min(b[i]).min(c[i]), a[i].max(b[i]).max(c[i]));

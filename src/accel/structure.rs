@@ -240,7 +240,7 @@ impl<const ANY: bool, T: Real, C: Counter> Visit<T> for Nearest<'_, ANY, T, C> {
     #[inline(always)]
     fn leaf<S: Simd>(&mut self, s: S, blocks: &[Block<T>]) -> bool {
         count(self.counter, blocks);
-        block::leaf::<ANY, T, S>(s, blocks, self.ray, self.heading, self.ignore, &mut self.hit)
+        block::leaf::<ANY, T, S>(s, blocks, self.ray, &self.heading, self.ignore, &mut self.hit)
     }
 }
 
@@ -295,7 +295,7 @@ impl<T: Real, C: Counter> Visit<T> for Every<'_, T, C> {
             s,
             blocks,
             self.ray,
-            self.heading,
+            &self.heading,
             self.ignore,
             #[inline(always)]
             |hit| self.found.push(self.ray.finish(hit)),

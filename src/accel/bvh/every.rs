@@ -167,7 +167,7 @@ impl<T: Real> Crowd<T> {
                 s,
                 blocks,
                 &of.ray,
-                of.heading,
+                &of.heading,
                 of.ignore,
                 #[inline(always)]
                 |hit| met.put(of.number, of.ray.finish(hit)),

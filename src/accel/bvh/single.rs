@@ -120,7 +120,7 @@ pub fn trace<const ANY: bool, T: Real, S: Simd>(
         let mut child = entry.child();
         loop {
             if child.is_leaf() {
-                if leaf::<ANY, T, S>(s, tree.run(child), ray, heading, ignore, &mut hit) {
+                if leaf::<ANY, T, S>(s, tree.run(child), ray, &heading, ignore, &mut hit) {
                     return hit;
                 }
                 break;

@@ -50,7 +50,7 @@ impl<T: Real> Row<T> {
     fn turn<const ANY: bool, S: Simd>(&mut self, s: S, tree: &Bvh<T>) -> bool {
         if self.child.is_leaf() {
             let run = tree.run(self.child);
-            if leaf::<ANY, T, S>(s, run, &self.ray, self.heading, self.ignore, &mut self.hit) {
+            if leaf::<ANY, T, S>(s, run, &self.ray, &self.heading, self.ignore, &mut self.hit) {
                 return false;
             }
         } else {
