@@ -188,7 +188,7 @@ impl Stack {
     /// without a branch: how many there are and in which order could not be guessed. No entry is before zero, and those
     /// of the other children are infinite.
     #[inline(always)]
-    pub fn add<T: Real>(&mut self, node: &Node<T>, bits: u32, entries: &[T; WIDTH]) -> Child {
+    pub fn add<T: Real>(&mut self, node: &Node<T>, bits: u32, entries: &[T; WIDTH]) {
         let (slots, base) = (SLOTS[bits as usize & 0xff], self.len);
         let number = slots >> 24;
         let first = Entry::of(slots, 0, node, entries);
@@ -204,17 +204,13 @@ impl Stack {
             self.entries.get_unchecked_mut(len).write(last);
             len += (number > 2) as usize;
             self.entries.get_unchecked_mut(len).write(middle);
-            self.len = len + (number > 1) as usize;
+            len += (number > 1) as usize;
+            self.entries.get_unchecked_mut(len).write(near);
+            self.len = len + (number > 0) as usize;
         }
-        let mut near = near;
-        let mut k = 3;
-        while k < number {
-            let other = Entry::of(slots, k, node, entries);
-            self.insert(base, other.max(near));
-            near = other.min(near);
-            k += 1;
+        for k in 3..number {
+            self.insert(base, Entry::of(slots, k, node, entries));
         }
-        near.child()
     }
     /// Puts `e` among the entries from `base` on, which are in falling order.
     #[inline(always)]

@@ -64,29 +64,22 @@ pub fn children<T: Real, S: Simd>(
     (T::V8::<S>::bits(mask), entry.to_array())
 }
 
-/// The nearest of the children of a node that the ray passes before `end`; the others wait on the stack.
+/// Puts the children of a node that the ray passes before `end` on the stack, the nearest on top.
 #[inline(always)]
-pub fn descend_to<T: Real, S: Simd>(
+pub fn add_children<T: Real, S: Simd>(
     s: S,
     node: &Node<T>,
     ray: &Ready<T>,
     sides: &Sides,
     end: T,
     stack: &mut Stack,
-) -> Option<Child> {
+) {
     let (mask, entry) = passed(s, node, ray, sides, end);
-    let bits = T::V8::<S>::bits(mask) & 0xff;
-    if bits == 0 {
-        return None;
-    }
-    if bits & (bits - 1) == 0 {
-        return Some(node.children[bits.trailing_zeros() as usize & (WIDTH - 1)]);
-    }
     let zero = splat8::<T, S>(s, T::zero());
     // What is added makes of -0 +0.
     let entry = SimdBase::max(entry, zero) + zero;
     let entry = T::V8::<S>::select(mask, entry, splat8(s, T::INFINITY));
-    Some(stack.add(node, bits, &entry.to_array()))
+    stack.add(node, T::V8::<S>::bits(mask), &entry.to_array());
 }
 
 #[inline(always)]

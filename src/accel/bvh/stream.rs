@@ -4,11 +4,12 @@
 
 use super::Bvh;
 use super::node::{Child, Stack, key};
-use super::single::{self, Sides};
+use super::single::{self, Sides, splat8};
 use crate::accel::Hit;
 use crate::accel::batch::{Sink, Source};
 use crate::accel::block::leaf;
 use crate::accel::ray::{Eight, Heading, Prepared, Ready, prepare, proper};
+use crate::geometry::ray_triangle::{along, permutation};
 use crate::real::{Lanes, Real};
 use crate::simd::{Simd, SimdBase};
 
@@ -55,13 +56,7 @@ impl<T: Real> Row<T> {
             }
         } else {
             let node = tree.node(self.child);
-            if let Some(nearest) =
-                single::descend_to(s, node, &self.ray, &self.sides, self.hit.t, &mut self.stack)
-            {
-                self.child = nearest;
-                tree.prefetch(self.child);
-                return true;
-            }
+            single::add_children(s, node, &self.ray, &self.sides, self.hit.t, &mut self.stack);
         }
         let end = key(self.hit.t);
         while let Some(entry) = self.stack.pop() {
@@ -84,6 +79,10 @@ struct Queue<'a, T: Real, R> {
     next: usize,
     lanes: Prepared<[T; 8]>,
     proper: u32,
+    /// The lanes that go mostly along x and along y, and those that go down each axis.
+    along: [u32; 2],
+    down: [u32; 3],
+    ignoring: bool,
 }
 
 impl<'a, T: Real, R: Source<T>> Queue<'a, T, R> {
@@ -91,7 +90,8 @@ impl<'a, T: Real, R: Source<T>> Queue<'a, T, R> {
     fn new<S: Simd>(s: S, bounds: &'a [[T; 3]; 2], rays: &'a R, chosen: &'a [u32]) -> Self {
         let zero = [T::zero(); 8];
         let lanes = Prepared::all(zero);
-        let mut queue = Queue { bounds, rays, chosen, next: 0, lanes, proper: 0 };
+        let (along, down, ignoring) = ([0; 2], [0; 3], rays.ignoring());
+        let mut queue = Queue { bounds, rays, chosen, next: 0, lanes, proper: 0, along, down, ignoring };
         queue.fill(s);
         queue
     }
@@ -99,12 +99,24 @@ impl<'a, T: Real, R: Source<T>> Queue<'a, T, R> {
     #[inline(always)]
     fn fill<S: Simd>(&mut self, s: S) {
         let last = self.chosen.len() - 1;
-        let Eight { origin, direction, t_min, t_max } = Eight::load(
-            s,
-            #[inline(always)]
-            |l| self.rays.ray(self.chosen[(self.next + l).min(last)] as usize),
-        );
+        let first = self.chosen[self.next] as usize;
+        // Where all rays go their own way, they come in runs.
+        let run = first.is_multiple_of(8)
+            && self.chosen.get(self.next + 7).is_some_and(|&c| c as usize == first + 7);
+        let Eight { origin, direction, t_min, t_max } = if run {
+            self.rays.eight(s, first)
+        } else {
+            Eight::load(
+                s,
+                #[inline(always)]
+                |l| self.rays.ray(self.chosen[(self.next + l).min(last)] as usize),
+            )
+        };
         self.proper = T::V8::<S>::bits(proper(origin, direction, t_min, t_max));
+        self.along = [T::V8::<S>::bits(along(0, direction)), T::V8::<S>::bits(along(1, direction))];
+        for k in 0..3 {
+            self.down[k] = T::V8::<S>::bits(Lanes::less(direction[k], splat8(s, T::zero())));
+        }
         self.lanes = prepare(self.bounds, origin, direction, t_min, t_max).each(
             #[inline(always)]
             |v| v.to_array(),
@@ -128,14 +140,17 @@ impl<'a, T: Real, R: Source<T>> Queue<'a, T, R> {
                 answer.put(index as usize, Hit::no_ray());
                 continue;
             }
-            let ray = self.rays.ray(index as usize);
-            let heading = Heading::of(ray.direction);
+            let bit = |lanes: u32| (lanes >> l & 1) as usize;
+            let axis = 2 - 2 * bit(self.along[0]) - bit(self.along[1]);
+            let down = [bit(self.down[0]), bit(self.down[1]), bit(self.down[2])];
+            let heading = Heading { order: permutation(axis), negative: down };
+            let ignore = if self.ignoring { self.rays.ray(index as usize).ignore_face } else { -1 };
             let ready = self.lanes.map(
                 heading,
                 #[inline(always)]
                 |v| v[l],
             );
-            return Some((index as usize, ray.ignore_face, (ready, heading)));
+            return Some((index as usize, ignore, (ready, heading)));
         }
         None
     }
