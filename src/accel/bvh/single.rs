@@ -110,43 +110,16 @@ pub fn trace<const ANY: bool, T: Real, S: Simd>(
         if entry.after(key(hit.t)) {
             continue;
         }
-        let mut child = entry.child();
-        loop {
-            if child.is_leaf() {
-                if leaf::<ANY, T, S>(s, tree.run(child), ray, &heading, ignore, &mut hit) {
-                    return hit;
-                }
-                break;
+        let child = entry.child();
+        if child.is_leaf() {
+            if leaf::<ANY, T, S>(s, tree.run(child), ray, &heading, ignore, &mut hit) {
+                return hit;
             }
-            let node = tree.node(child);
-            let (mut bits, entries) = children(s, node, ray, &sides, hit.t);
-            let Some(nearest) = descend(&mut bits, node, &entries, &mut stack) else { break };
-            child = nearest;
+        } else {
+            add_children(s, tree.node(child), ray, &sides, hit.t, &mut stack);
         }
     }
     hit
-}
-
-/// The nearest of the passed children; the others wait on the stack.
-#[inline(always)]
-pub fn descend<T: Real>(
-    bits: &mut u32,
-    node: &Node<T>,
-    entries: &[T; 8],
-    stack: &mut Stack,
-) -> Option<Child> {
-    let first = next(bits, node, entries)?;
-    // Most often one or two children are passed.
-    let Some(second) = next(bits, node, entries) else { return Some(first.child()) };
-    // Minimum and maximum rather than a comparison, whose outcome could not be guessed.
-    let mut nearest = first.min(second);
-    let base = stack.len();
-    stack.push(first.max(second));
-    while let Some(other) = next(bits, node, entries) {
-        stack.insert(base, other.max(nearest));
-        nearest = other.min(nearest);
-    }
-    Some(nearest.child())
 }
 
 /// The next passed child, and where the ray enters it.
