@@ -169,6 +169,9 @@ pub fn sobol_many<T: Real>(
 
 /// So many points are made together: they differ in the lowest digits of the index only.
 const TILE: usize = 64;
+/// Numbers that are written together in long rows, and how long these are.
+const LINE: usize = 8;
+const MANY: usize = 64;
 
 #[inline(always)]
 fn body<T: Real>(
@@ -184,30 +187,57 @@ fn body<T: Real>(
     while !rest.is_empty() {
         let (now, later) = rest.split_at_mut(rest.len().min((TILE - skip) * width));
         let count = now.len() / width;
-        for d in 0..width {
-            let (high, low) = match wide {
-                Some(wide) => {
-                    let x = wide_digits(aligned, &wide[d]);
-                    ((x >> 32) as u32, x as u32)
+        let mut d = 0;
+        // Rows of many numbers are written by whole cache lines: a column of them would fall on few places of the cache.
+        while width >= MANY && d + LINE <= width {
+            let mut lines = [[T::zero(); LINE]; TILE];
+            for k in 0..LINE {
+                let values = column(aligned, table, scrambles, wide, d + k);
+                for j in 0..TILE {
+                    lines[j][k] = values[j];
                 }
-                None => (sobol(aligned as u32, &table[d]), 0),
-            };
-            // No closure: it would be called outside the dispatch.
-            #[allow(clippy::manual_map)]
-            let scramble = match scrambles {
-                Some(s) => Some(s[d]),
-                None => None,
-            };
-            let values = tile(high, low, &table[d], scramble);
-            let (values, column) = (&values[skip..skip + count], &mut now[d..]);
+            }
+            for j in 0..count {
+                now[j * width + d..][..LINE].copy_from_slice(&lines[skip + j]);
+            }
+            d += LINE;
+        }
+        while d < width {
+            let values = column(aligned, table, scrambles, wide, d);
             // Counting by hand: an iterator's `next` would be called outside the dispatch.
             for j in 0..count {
-                column[j * width] = values[j];
+                now[j * width + d] = values[skip + j];
             }
+            d += 1;
         }
         (rest, skip) = (later, 0);
         aligned = aligned.wrapping_add(TILE as u64);
     }
+}
+
+/// Coordinate `d` of the points of the tile that begins at index `aligned`.
+#[inline(always)]
+fn column<T: Real>(
+    aligned: u64,
+    table: &[Columns],
+    scrambles: Option<&[Scramble]>,
+    wide: Option<&[Wide]>,
+    d: usize,
+) -> [T; TILE] {
+    let (high, low) = match wide {
+        Some(wide) => {
+            let x = wide_digits(aligned, &wide[d]);
+            ((x >> 32) as u32, x as u32)
+        }
+        None => (sobol(aligned as u32, &table[d]), 0),
+    };
+    // No closure: it would be called outside the dispatch.
+    #[allow(clippy::manual_map)]
+    let scramble = match scrambles {
+        Some(s) => Some(s[d]),
+        None => None,
+    };
+    tile(high, low, &table[d], scramble)
 }
 
 /// One coordinate of the points of a tile, the first of which has the digits `high` and `low`.

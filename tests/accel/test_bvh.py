@@ -215,7 +215,7 @@ def test_every_builder_holds_whatever_the_mesh(method, dtype):
 @pytest.mark.parametrize("crowd", ["even", "nested", "half in one cell", "all but one in one cell"])
 @pytest.mark.parametrize("dtype", [np.float32, np.float64])
 def test_morton_order_of_large_crowded_meshes(crowd, dtype):
-    """Long enough to be sorted in parts; in crowds the upper bits of many codes are equal, and the lower ones decide."""
+    """Long enough to be sorted in parts; in crowds the upper bits of many codes are equal, and the lower decide."""
     rng = np.random.default_rng(15)
     n = 60_000
     scale = {

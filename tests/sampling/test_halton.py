@@ -121,3 +121,13 @@ def test_hammersley_is_a_net_of_two_dimensions():
     assert q.dtype == np.float32
     assert np.array_equal(np.floor(q[:, 0].astype(np.float64) * 100), np.arange(100))
     assert sl.sampling.hammersley(5, 1).shape == (5, 1)
+
+
+@pytest.mark.parametrize("dtype", [np.float32, np.float64])
+@pytest.mark.parametrize("scramble", [None, "digits", "owen"])
+@pytest.mark.parametrize("start", [0, 37, 2**40 + 1])
+def test_long_rows_begin_as_short_ones(dtype, scramble, start):
+    """Long rows are written by lines of several numbers, short ones by columns."""
+    rows = [sl.sampling.halton(150, d, scramble=scramble, seed=2, start=start, dtype=dtype) for d in (150, 83, 64, 63)]
+    for short in rows[1:]:
+        assert np.array_equal(rows[0][:, : short.shape[1]], short)

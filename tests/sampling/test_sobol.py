@@ -168,3 +168,13 @@ def test_the_rate_on_a_smooth_integrand_is_three_halves(dimensions):
     slope = np.polyfit(exponents, np.log2(spread), 1)[0]
     # Owen 1997: n^(-3/2) up to logarithms, which hold it up in more dimensions; each point is known to 10 %.
     assert {1: -1.65, 2: -1.65, 4: -1.6}[dimensions] < slope < {1: -1.4, 2: -1.35, 4: -1.15}[dimensions]
+
+
+@pytest.mark.parametrize("dtype", [np.float32, np.float64])
+@pytest.mark.parametrize("scramble", [None, "owen"])
+@pytest.mark.parametrize("start", [0, 37, 2**32 - 50])
+def test_long_rows_begin_as_short_ones(dtype, scramble, start):
+    """Long rows are written by lines of several numbers, short ones by columns."""
+    rows = [sl.sampling.sobol(150, d, scramble=scramble, seed=2, start=start, dtype=dtype) for d in (150, 83, 64, 63)]
+    for short in rows[1:]:
+        assert np.array_equal(rows[0][:, : short.shape[1]], short)

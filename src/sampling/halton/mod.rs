@@ -9,13 +9,15 @@
 //! J. H. Halton, *On the efficiency of certain quasi-random sequences of points*, 1960. A. B. Owen, *Randomly permuted
 //! (t, m, s)-nets and (t, s)-sequences*, 1995; *A randomized Halton algorithm in R*, 2017.
 
-use super::hash::{Key, mix32, permute};
+mod table;
+
+use super::hash::{Key, mix32};
 pub use super::primes::PRIMES;
 use super::sobol::{Scramble, shuffled};
 use crate::dispatch;
-use crate::math::exact::two_product;
 use crate::parallel::{self, Interrupted, Rows, Watch};
 use crate::real::Real;
+use table::Table;
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Scrambling {
@@ -111,117 +113,6 @@ fn mirrored(index: u64, base: u32) -> f64 {
     number as f64 / power as f64
 }
 
-/// One dimension, prepared: the lowest digits of an index are looked up.
-enum Table {
-    /// The looked-up numbers and what rounding took from them; for permuted digits the key of the permutations, and what zeros at each
-    /// position after those looked up and all following ones come to.
-    Fixed {
-        numbers: Vec<f64>,
-        lacks: Vec<f64>,
-        looked_up: u64,
-        permuted: Option<(Key, Vec<f64>)>,
-    },
-    /// Hashes and digits of the looked-up prefixes; how many digits follow; the power of the base of all of them.
-    Nested {
-        hashes: Vec<u32>,
-        numbers: Vec<f64>,
-        digits: u32,
-        power: u64,
-    },
-    Binary(Scramble),
-}
-
-/// Digits after which positions hold less than 2⁻⁶⁰, at least.
-fn positions(base: u32) -> u64 {
-    let (mut n, mut power) = (0, 1u64);
-    while power < 1 << 60 && power < u64::MAX / u64::from(base) {
-        (n, power) = (n + 1, power * u64::from(base));
-    }
-    n
-}
-
-impl Table {
-    /// At most `limit` numbers are looked up.
-    fn new(scrambling: Scrambling, key: Key, dimension: usize, limit: u64) -> Self {
-        let (base, key) = (PRIMES[dimension], key.at(dimension as u64));
-        let (mut looked_up, mut size) = (0, 1u64);
-        while size * u64::from(base) <= limit {
-            (looked_up, size) = (looked_up + 1, size * u64::from(base));
-        }
-        match scrambling {
-            Scrambling::Owen if base == 2 => Table::Binary(Scramble::keyed(key)),
-            Scrambling::Owen => {
-                let mut prefixes = vec![(root(key), 0.0)];
-                for _ in 0..looked_up {
-                    let next = |d| {
-                        prefixes.iter().map(move |&(hash, number)| {
-                            let (digit, hash) = push(hash, base, 1.0 / base as f32, d);
-                            (hash, number * f64::from(base) + f64::from(digit))
-                        })
-                    };
-                    prefixes = (0..base).flat_map(next).collect();
-                }
-                let (digits, power) = nested_digits(base);
-                let (hashes, numbers) = prefixes.into_iter().unzip();
-                Table::Nested { hashes, numbers, digits: digits - looked_up as u32, power }
-            }
-            _ => {
-                let permuting = scrambling == Scrambling::Digits;
-                let mut numbers = vec![0u64];
-                for p in 0..looked_up {
-                    let digit = |d| if permuting { permute(d, base, key.at(p)) } else { d };
-                    let digits: Vec<u64> = (0..base).map(|d| u64::from(digit(d))).collect();
-                    let next = |&d: &u64| numbers.iter().map(move |x| x * u64::from(base) + d);
-                    numbers = digits.iter().flat_map(next).collect();
-                }
-                let (numbers, lacks) = numbers.iter().map(|&x| quotient(x, size)).unzip();
-                let permuted = permuting.then(|| {
-                    let mut zeros = vec![0.0];
-                    for p in (looked_up..positions(base)).rev() {
-                        let below = zeros[zeros.len() - 1];
-                        zeros.push((f64::from(permute(0, base, key.at(p))) + below) / f64::from(base));
-                    }
-                    zeros.reverse();
-                    (key, zeros)
-                });
-                Table::Fixed { numbers, lacks, looked_up, permuted }
-            }
-        }
-    }
-    fn size(&self) -> u64 {
-        match self {
-            Table::Fixed { numbers, .. } => numbers.len() as u64,
-            Table::Nested { numbers, .. } => numbers.len() as u64,
-            Table::Binary(_) => 1 << 32,
-        }
-    }
-    /// What the digits above those looked up come to, `high` being their number.
-    fn tail(&self, base: u32, high: u64) -> f64 {
-        match self {
-            Table::Fixed { looked_up, permuted: Some((key, zeros)), .. } => {
-                let (mut rest, mut sum, mut scale, mut p) = (high, 0.0, 1.0, 0);
-                while rest != 0 && p + 1 < zeros.len() {
-                    scale /= f64::from(base);
-                    let digit = (rest % u64::from(base)) as u32;
-                    sum += scale * f64::from(permute(digit, base, key.at(looked_up + p as u64)));
-                    (rest, p) = (rest / u64::from(base), p + 1);
-                }
-                (sum + scale * zeros[p]) / self.size() as f64
-            }
-            Table::Fixed { .. } => mirrored(high, base) / self.size() as f64,
-            _ => 0.0,
-        }
-    }
-}
-
-/// a / b as the sum of a double and what it lacks; both are below 2⁵³.
-fn quotient(a: u64, b: u64) -> (f64, f64) {
-    let (a, b) = (a as f64, b as f64);
-    let high = a / b;
-    let (product, error) = two_product(high, b);
-    (high, ((a - product) - error) / b)
-}
-
 /// Points `start` … of the sequence, one row each. Needs start + rows ≤ 2⁶⁴ and no more columns than [`PRIMES`].
 pub fn halton_many<T: Real>(
     watch: &mut dyn Watch,
@@ -250,6 +141,9 @@ pub fn halton_many<T: Real>(
 }
 
 const TILE: usize = 64;
+/// Numbers that are written together in long rows, and how long these are.
+const LINE: usize = 8;
+const MANY: usize = 64;
 /// Dimensions whose numbers are looked up even if they are plain: those of primes up to 509.
 const TABLED: usize = 97;
 
@@ -313,24 +207,59 @@ fn body<T: Real>(first: u64, tables: &[Table], rows: Rows<'_, T>) {
         for i in start..start + count {
             counter.step(&mut data[i * width + tables.len()..(i + 1) * width]);
         }
-        for d in 0..tables.len() {
-            let (table, base) = (&tables[d], PRIMES[d]);
-            let (mut done, size) = (0, table.size());
-            while done < count {
-                // A run of indices that agree in all but the digits looked up.
-                let index = first + (start + done) as u64;
-                let (high, low) =
-                    if size == 1 { (index, 0) } else { (index / size, (index % size) as usize) };
-                let n = (count - done).min((size - low as u64).min(TILE as u64) as usize);
-                if tails[d].0 != high {
-                    tails[d] = (high, table.tail(base, high));
-                }
-                let column = &mut data[(start + done) * width + d..];
-                run(table, base, high, low, tails[d].1, n, width, column);
-                done += n;
+        let mut d = 0;
+        // Rows of many numbers are written by whole cache lines: a column of them would fall on few places of the cache.
+        while width >= MANY && d + LINE <= tables.len() {
+            let mut lines = [[T::zero(); LINE]; TILE];
+            let flat = lines.as_flattened_mut();
+            for k in 0..LINE {
+                column(
+                    &tables[d + k],
+                    PRIMES[d + k],
+                    &mut tails[d + k],
+                    first + start as u64,
+                    count,
+                    LINE,
+                    &mut flat[k..],
+                );
             }
+            for j in 0..count {
+                data[(start + j) * width + d..][..LINE].copy_from_slice(&lines[j]);
+            }
+            d += LINE;
+        }
+        while d < tables.len() {
+            let out = &mut data[start * width + d..];
+            column(&tables[d], PRIMES[d], &mut tails[d], first + start as u64, count, width, out);
+            d += 1;
         }
         start += count;
+    }
+}
+
+/// `count` coordinates from index `first` on, each `width` after the last. `tail` is the last index whose upper digits
+/// were summed, and their sum.
+#[inline(always)]
+fn column<T: Real>(
+    table: &Table,
+    base: u32,
+    tail: &mut (u64, f64),
+    first: u64,
+    count: usize,
+    width: usize,
+    out: &mut [T],
+) {
+    let (mut done, size) = (0, table.size());
+    while done < count {
+        // A run of indices that agree in all but the digits looked up.
+        let index = first + done as u64;
+        let (high, low) = if size == 1 { (index, 0) } else { (index / size, (index % size) as usize) };
+        let n = (count - done).min((size - low as u64).min(TILE as u64) as usize);
+        if tail.0 != high {
+            *tail = (high, table.tail(base, high));
+        }
+        run(table, base, high, low, tail.1, n, width, &mut out[done * width..]);
+        done += n;
     }
 }
 
