@@ -2,11 +2,14 @@
 //! has its own, or finds it by number.
 
 use super::bsdf::{Bsdf, Terms};
+use super::compensated_glass::Wanted;
 use super::lambert::Diffuse;
 use super::metallic_roughness::Lobes;
 use super::model::{Draw, Model, Row, WIDTH};
 use super::one_metal::OneMetal;
+use super::principled::Principled;
 use super::rough_conductor::RoughConductor;
+use super::rough_dielectric::RoughDielectric;
 use super::specular_glossiness::SpecularGlossiness;
 use crate::parallel::{self, Interrupted, Watch};
 use crate::real::{Lanes, Real};
@@ -63,6 +66,25 @@ impl<T: Real> Rows<'_, T> {
     }
 }
 
+/// Makes the tables that compensated glass asks for, where a watch can stop it.
+fn tables<T: Real>(watch: &mut dyn Watch, rows: &Rows<'_, T>) -> Result<(), Interrupted> {
+    let mut wanted = Wanted::none();
+    for row in rows.rows {
+        match rows.kind {
+            13 => {
+                let glass = RoughDielectric::of(row);
+                wanted.add(&glass.facets, glass.eta);
+            }
+            14 => {
+                let glass = Principled::of(row).glass;
+                wanted.add(&glass.facets, glass.eta);
+            }
+            _ => return Ok(()),
+        }
+    }
+    wanted.make(watch)
+}
+
 const PIECE: usize = 1 << 12;
 /// Of values, which are cheap: long runs of memory.
 const RUN: usize = 1 << 14;
@@ -79,6 +101,7 @@ pub fn eval_many<T: Real>(
         Some(Bsdf::RoughConductor(metal)) => OneMetal::of(&metal),
         _ => None,
     };
+    tables(watch, &rows)?;
     parallel::for_each(watch, (wi, wo, out), RUN, |first, (wi, wo, out)| {
         dispatch!(s => {
             if let Some(metal) = metal {
@@ -188,6 +211,7 @@ pub fn pdf_many<T: Real>(
     wo: &[[T; 3]],
     out: &mut [[T; 1]],
 ) -> Result<(), Interrupted> {
+    tables(watch, &rows)?;
     parallel::for_each(watch, (wi, wo, out), RUN, |first, (wi, wo, out)| {
         dispatch!(s => {
             if rows.ids.is_none() && lanes::<T, _, Density, 1>(s, &rows, first, (wi, wo), out) {
@@ -204,8 +228,8 @@ pub fn pdf_many<T: Real>(
     })
 }
 
-/// Draws as columns: direction, weight, density, whether specular, index ratio. NaN where a parameter is, or where
-/// nothing can come back along `wo`.
+/// Draws as columns: direction, weight, density, whether specular, index ratio. NaN where a parameter or a number is, or
+/// where nothing can come back along `wo`.
 pub struct Draws<'a, T> {
     pub wi: &'a mut [[T; 3]],
     pub weight: &'a mut [[T; 3]],
@@ -221,6 +245,7 @@ pub fn sample_many<T: Real>(
     u: &[[T; 3]],
     out: Draws<'_, T>,
 ) -> Result<(), Interrupted> {
+    tables(watch, &rows)?;
     let columns = (wo, u, out.wi, out.weight, out.pdf, out.specular, out.eta);
     parallel::for_each(watch, columns, PIECE, |first, (wo, u, wi, weight, pdf, specular, eta)| {
         dispatch!(_s => {
@@ -228,8 +253,9 @@ pub fn sample_many<T: Real>(
             for i in 0..wo.len() {
                 let nan = Vec3::splat(T::NAN);
                 let draw = match rows.serving(first + i, &only, &mut own) {
-                    Some(bsdf) => bsdf.sample(wo[i].into(), u[i]),
-                    None => None,
+                    // A number that is none would choose all the same.
+                    Some(bsdf) if !(u[i][0] + u[i][1] + u[i][2]).is_nan() => bsdf.sample(wo[i].into(), u[i]),
+                    _ => None,
                 };
                 let draw = draw.unwrap_or(Draw { wi: nan, weight: nan, pdf: T::NAN, specular: false, eta: T::NAN });
                 (wi[i], weight[i]) = (draw.wi.to_array(), draw.weight.to_array());

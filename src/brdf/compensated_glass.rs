@@ -17,10 +17,11 @@
 //! scattering compensation for microfacet models*, 2019 (the scaled form).
 
 use super::fresnel::fresnel_dielectric;
-use super::kulla_conty::{Albedo, Form, KINDS, SIZE, Slice, kind, place};
+use super::kulla_conty::{Albedo, Form, KINDS, SIZE, Slice, kind, made, normal, of_kind, place};
 use super::microfacets::{Masking, Microfacets, Shape};
 use super::model::{Draw, Drawn, Model, Row, weighed};
 use super::rough_dielectric::RoughDielectric;
+use crate::parallel::{self, Interrupted, Watch};
 use crate::real::{Lanes, Real};
 use crate::sampling::cosine_hemisphere::square_to_cosine_hemisphere;
 use crate::sampling::disk::Method;
@@ -28,9 +29,9 @@ use crate::vec::Vec3;
 use std::sync::OnceLock;
 
 /// Slabs on either side of η = 1.
-const SLABS: usize = 32;
+const SLABS: usize = 64;
 /// Cells of the quadrature by azimuth and by height of the drawn normals.
-const TURNS: usize = 16;
+const TURNS: usize = 32;
 const CELLS: usize = 64;
 /// Less light than this is none.
 const NOTHING: f64 = 1e-9;
@@ -43,21 +44,22 @@ fn returned(facets: &Microfacets<f64>, n: f64, cos: f64) -> f64 {
         // Half of the azimuths, by symmetry; points gather where directions graze, at the end of the other number.
         let rest = 1.0 - ((i % CELLS) as f64 + 0.5) / CELLS as f64;
         let u = [((i / CELLS) as f64 + 0.5) * 0.5 / TURNS as f64, 1.0 - rest * rest];
-        let normal = facets.sample(wo, u);
+        let (normal, share) = normal(facets, wo, u);
         let co = wo.dot(normal);
         if !(co > 0.0) {
             continue;
         }
         let fresnel = fresnel_dielectric(co.min(1.0), n);
         let f = fresnel.average();
-        let weight = 2.0 * rest * facets.distribution(normal) / facets.density_over_cosine(wo, normal);
+        let weight = 2.0 * rest * share;
         let off = normal * (2.0 * co) - wo;
         if off.z > 0.0 {
             sum += weight * f * facets.visibility(off, wo, normal) * off.z * 4.0;
         }
         let across = normal * (co / n - fresnel.cos_t) - wo * (1.0 / n);
         if across.z < 0.0 && f < 1.0 {
-            sum += weight * (1.0 - f) * facets.masking_of(across) * facets.masking_of(wo) / wo.z;
+            sum +=
+                weight * (1.0 - f) * facets.masking_at(across, normal) * facets.masking_at(wo, normal) / wo.z;
         }
     }
     // What the quadrature is off by is no light that facets invent.
@@ -65,26 +67,60 @@ fn returned(facets: &Microfacets<f64>, n: f64, cos: f64) -> f64 {
 }
 
 /// Of one index: those below one follow those above.
-fn slab(shape: Shape, masking: Masking, number: usize) -> &'static Albedo {
+fn slab(kind: usize, number: usize) -> &'static Albedo {
     static TABLES: [[OnceLock<Box<Albedo>>; 2 * SLABS]; KINDS] =
         [const { [const { OnceLock::new() }; 2 * SLABS] }; KINDS];
-    TABLES[kind(shape, masking)][number].get_or_init(|| {
+    made(&TABLES[kind][number], || {
         let root = (number % SLABS) as f64 / (SLABS - 1) as f64;
         // Neither equal indices nor infinite ones.
         let x = (root * root).clamp(1e-9, 1.0 - 1e-9);
         let n = (1.0 + x) / (1.0 - x);
         let n = if number < SLABS { n } else { 1.0 / n };
-        Box::new(Albedo::build(shape, masking, |facets, cos| returned(facets, n, cos)))
+        let (shape, masking) = of_kind(kind);
+        Albedo::build(shape, masking, |facets, cos| returned(facets, n, cos))
     })
 }
 
-/// The slabs about an index other than one, and the share of the second.
+/// The first of the two slabs about an index other than one, and the share of the second.
 #[inline(always)]
-fn between(shape: Shape, masking: Masking, n: f64) -> ([&'static Albedo; 2], f64) {
+fn place_of(n: f64) -> (usize, f64) {
     let at = ((n - 1.0).abs() / (n + 1.0)).sqrt() * (SLABS - 1) as f64;
     let below = (at as usize).min(SLABS - 2);
-    let first = below + if n < 1.0 { SLABS } else { 0 };
-    ([slab(shape, masking, first), slab(shape, masking, first + 1)], at - below as f64)
+    (below + if n < 1.0 { SLABS } else { 0 }, at - below as f64)
+}
+
+#[inline(always)]
+fn between(shape: Shape, masking: Masking, n: f64) -> ([&'static Albedo; 2], f64) {
+    let (first, share) = place_of(n);
+    let kind = kind(shape, masking);
+    ([slab(kind, first), slab(kind, first + 1)], share)
+}
+
+/// Which slabs interfaces ask for.
+pub struct Wanted([[bool; 2 * SLABS]; KINDS]);
+
+impl Wanted {
+    pub fn none() -> Self {
+        Wanted([[false; 2 * SLABS]; KINDS])
+    }
+    pub fn add<T: Real>(&mut self, facets: &Microfacets<T>, eta: T) {
+        let n = eta.to_f64();
+        if n == 1.0 || n.is_nan() {
+            return;
+        }
+        for n in [n, 1.0 / n] {
+            let (first, _) = place_of(n);
+            self.0[kind(facets.shape, facets.masking)][first..first + 2].fill(true);
+        }
+    }
+    /// Makes them, on all threads; each takes some tenth of a second.
+    pub fn make(&self, watch: &mut dyn Watch) -> Result<(), Interrupted> {
+        let all = (0..KINDS).flat_map(|kind| (0..2 * SLABS).map(move |number| (kind, number)));
+        let wanted: Vec<_> = all.filter(|&(kind, number)| self.0[kind][number]).collect();
+        parallel::run(watch, wanted.len(), |i| {
+            slab(wanted[i].0, wanted[i].1);
+        })
+    }
 }
 
 /// The table of an index, between its slabs: rows of a roughness, by cosines; and the average of each row.

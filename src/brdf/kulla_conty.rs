@@ -52,6 +52,33 @@ pub fn kind(shape: Shape, masking: Masking) -> usize {
     masking as usize + 4 * (shape == Shape::Beckmann) as usize
 }
 
+pub fn of_kind(kind: usize) -> (Shape, Masking) {
+    use Masking::{HeightCorrelated, Schlick, Separable, VCavity};
+    let masking = [HeightCorrelated, Separable, Schlick, VCavity][kind % 4];
+    (if kind < 4 { Shape::Ggx } else { Shape::Beckmann }, masking)
+}
+
+/// A table, made if it is not there. Not under the cell's lock: a process forked meanwhile would wait for it for ever.
+/// Threads that come at the same time make it each, and keep one.
+pub fn made(cell: &'static OnceLock<Box<Albedo>>, make: impl Fn() -> Albedo) -> &'static Albedo {
+    if let Some(table) = cell.get() {
+        return table;
+    }
+    let table = Box::new(make());
+    cell.get_or_init(|| table)
+}
+
+/// A normal for the quadrature, and D over its density by the cosine at `wo`. Of Beckmann by D cos, though half of these
+/// turn away: whether light is reflected in whole depends on the slope, which then follows one of the numbers alone.
+pub fn normal(facets: &Microfacets<f64>, wo: Vec3<f64>, u: [f64; 2]) -> (Vec3<f64>, f64) {
+    if facets.shape == Shape::Beckmann || facets.masking == Masking::VCavity {
+        let normal = facets.normal(u);
+        return (normal, wo.dot(normal) / normal.z);
+    }
+    let normal = facets.sample(wo, u);
+    (normal, facets.distribution(normal) / facets.density_over_cosine(wo, normal))
+}
+
 fn returned(facets: &Microfacets<f64>, cos: f64) -> f64 {
     let wo = Vec3::new((1.0 - cos * cos).max(0.0).sqrt(), 0.0, cos);
     let mut sum = 0.0;
@@ -59,15 +86,14 @@ fn returned(facets: &Microfacets<f64>, cos: f64) -> f64 {
         // Half of the azimuths, by symmetry; points gather where directions graze, at the end of the other number.
         let rest = 1.0 - ((i % CELLS) as f64 + 0.5) / CELLS as f64;
         let u = [((i / CELLS) as f64 + 0.5) * 0.5 / TURNS as f64, 1.0 - rest * rest];
-        let normal = facets.sample(wo, u);
+        let (normal, share) = normal(facets, wo, u);
         let wi = normal * (2.0 * wo.dot(normal)) - wo;
         if wi.z > 0.0 && wo.dot(normal) > 0.0 {
-            let half = wi + wo;
-            let density = facets.density_over_cosine(wo, half) * 0.25;
-            sum += 2.0 * rest * facets.distribution(half) * facets.visibility(wi, wo, half) * wi.z / density;
+            sum += 8.0 * rest * share * facets.visibility(wi, wo, normal) * wi.z;
         }
     }
-    sum / (TURNS * CELLS) as f64
+    // What the quadrature is off by is no light that facets invent.
+    (sum / (TURNS * CELLS) as f64).min(1.0)
 }
 
 impl std::fmt::Debug for Albedo {
@@ -113,7 +139,7 @@ impl Albedo {
     /// The table of a kind of facets.
     pub fn of(shape: Shape, masking: Masking) -> &'static Self {
         static TABLES: [OnceLock<Box<Albedo>>; KINDS] = [const { OnceLock::new() }; KINDS];
-        TABLES[kind(shape, masking)].get_or_init(|| Box::new(Albedo::build(shape, masking, returned)))
+        made(&TABLES[kind(shape, masking)], || Albedo::build(shape, masking, returned))
     }
 
     #[inline(always)]
@@ -191,7 +217,7 @@ impl Form {
 #[inline(always)]
 pub fn missing<T: Real>(slice: &Slice<'_>, wi: Vec3<T>, wo: Vec3<T>) -> T {
     let lost = 1.0 - slice.average();
-    let both = (1.0 - slice.at(wi.z.to_f64())) * (1.0 - slice.at(wo.z.to_f64()));
+    let both = (1.0 - slice.at(wi.z.to_f64())).max(0.0) * (1.0 - slice.at(wo.z.to_f64())).max(0.0);
     T::of(if lost > 1e-9 { both / (std::f64::consts::PI * lost) } else { 0.0 })
 }
 
@@ -209,7 +235,11 @@ impl<T: Real> Compensated<T> {
     /// The chance of drawing from the added lobe.
     #[inline(always)]
     fn chance(&self, wo: Vec3<T>) -> T {
-        if self.form == Form::Scaled { T::zero() } else { T::of(1.0 - self.slice.at(wo.z.to_f64())) }
+        if self.form == Form::Scaled {
+            T::zero()
+        } else {
+            T::of((1.0 - self.slice.at(wo.z.to_f64())).max(0.0))
+        }
     }
 }
 

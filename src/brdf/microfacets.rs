@@ -76,8 +76,9 @@ impl<V: Lanes> Microfacets<V> {
             Shape::Ggx => {
                 let both = ax * ay;
                 let across = half.x * half.x * self.ratio[0] + half.y * half.y * self.ratio[1];
-                let width = (both * half.z * half.z + across) / half.length_squared();
-                both / (ax.num(std::f64::consts::PI) * width * width)
+                // Narrow lobes' fourth powers would leave the range of numbers.
+                let share = both * half.length_squared() / (both * half.z * half.z + across);
+                share * share / (ax.num(std::f64::consts::PI) * both)
             }
             Shape::Beckmann => {
                 let (x, y) = (half.x / (ax * half.z), half.y / (ay * half.z));
@@ -121,6 +122,18 @@ impl<V: Lanes> Microfacets<V> {
     #[inline(always)]
     pub fn masking_of(&self, w: Vec3<V>) -> V {
         w.z.abs() / self.smith(w)
+    }
+
+    /// The masking of one direction for facets of a unit normal.
+    #[inline(always)]
+    pub fn masking_at(&self, w: Vec3<V>, normal: Vec3<V>) -> V {
+        match self.masking {
+            Masking::VCavity => {
+                let one = w.z.num(1.0);
+                one.min((normal.z * w.z).abs() * w.z.num(2.0) / w.dot(normal).abs())
+            }
+            _ => self.masking_of(w),
+        }
     }
 
     /// G / (4 |cos θi cos θo|) of two unit directions on the same side, with their unnormalised half vector.
@@ -172,9 +185,30 @@ impl<V: Lanes> Microfacets<V> {
         sum * sum.num(0.5) * (sum.num(1.0) + three / (sum.num(10.0) + (sum.num(4.0) - three).sqrt()))
     }
 
-    /// A unit normal that `wo` above the horizon sees, from two numbers of [0, 1).
+    /// A unit normal by D cos, from two numbers of [0, 1).
+    #[inline(always)]
+    pub fn normal(&self, u: [V; 2]) -> Vec3<V> {
+        let one = u[0].num(1.0);
+        let turn = V::select(one.num(0.5).less(u[0]), u[0] - one, u[0]);
+        let (sin, cos) = math::sin_cos_turns(turn);
+        let slope2 = match self.shape {
+            Shape::Ggx => u[1] / (one - u[1]),
+            Shape::Beckmann => -math::ln(one - u[1]),
+        };
+        let slope = slope2.sqrt();
+        Vec3::new(self.alpha_x * (slope * cos), self.alpha_y * (slope * sin), one).normalize()
+    }
+
+    /// A unit normal for `wo` above the horizon, from two numbers of [0, 1): by how much of it `wo` sees behind others by
+    /// Smith's masking; of V-cavities by D cos, since they show more of what grazes than Smith's surfaces do.
     #[inline(always)]
     pub fn sample(&self, wo: Vec3<V>, u: [V; 2]) -> Vec3<V> {
+        if self.masking == Masking::VCavity {
+            // Of the two sides of a cavity the other, where one turns away.
+            let normal = self.normal(u);
+            let side = V::select(wo.dot(normal).less(wo.z.num(0.0)), wo.z.num(-1.0), wo.z.num(1.0));
+            return Vec3::new(normal.x * side, normal.y * side, normal.z);
+        }
         let (zero, one) = (wo.z.num(0.0), wo.z.num(1.0));
         let (ax, ay) = (self.alpha_x, self.alpha_y);
         if self.shape == Shape::Beckmann {
@@ -200,6 +234,12 @@ impl<V: Lanes> Microfacets<V> {
     #[inline(always)]
     pub fn density_over_cosine(&self, wo: Vec3<V>, half: Vec3<V>) -> V {
         let d = self.distribution(half);
+        if self.masking == Masking::VCavity {
+            let cos_half = wo.dot(half).abs().max(half.z.like(V::Elem::MIN_POSITIVE));
+            let (one, two) = (half.z.num(1.0), half.z.num(2.0));
+            let sides = V::select((two * wo.z * half.z).less(cos_half), two, one);
+            return sides * d * half.z / cos_half;
+        }
         match self.shape {
             Shape::Ggx => d / self.smith(wo),
             Shape::Beckmann => {

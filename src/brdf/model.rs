@@ -58,7 +58,8 @@ pub trait Drawn<T: Real>: Model<T> {
 #[inline(always)]
 pub fn weighed<T: Real, M: Model<T>>(model: &M, wi: Vec3<T>, wo: Vec3<T>, eta: T) -> Draw<T> {
     let pdf = model.pdf(wi, wo);
-    if !(pdf > T::zero()) {
+    // Of densities below the normal numbers no quotient is known; they are drawn never.
+    if !(pdf >= T::MIN_POSITIVE) {
         return Draw { eta, ..Draw::none(wi) };
     }
     Draw { wi, weight: model.eval(wi, wo) * (wi.z.abs() / pdf), pdf, specular: false, eta }

@@ -303,8 +303,10 @@ impl<T: Real> Principled<T> {
             return zero;
         }
         let unit = half.normalize();
-        let coated = if coat > zero {
-            coat * quarter * gtr(unit, self.coat_alpha, T::one()) * unit.z / wo.dot(unit)
+        // Against the beam rounding alone decides on the half vector and its cosine.
+        let cos_half = wo.dot(unit);
+        let coated = if coat > zero && cos_half > zero {
+            coat * quarter * gtr(unit, self.coat_alpha, T::one()) * unit.z / cos_half
         } else {
             zero
         };

@@ -77,7 +77,7 @@ impl<T: Real> Model<T> for RoughDielectric<T> {
         let Some((half, sum)) = Self::bend(wi, wo, eta) else { return Vec3::splat(wi.dot(wo) * T::zero()) };
         let (ci, co) = (wi.dot(half).abs(), wo.dot(half).abs());
         let through = Self::through(co, eta);
-        let masked = self.facets.masking_of(wi) * self.facets.masking_of(wo);
+        let masked = self.facets.masking_at(wi, half) * self.facets.masking_at(wo, half);
         let d = self.facets.distribution(half) / (sum * sum);
         self.tint * (d * through * masked * (ci / wi.z.abs()) * (co / wo.z))
     }

@@ -123,9 +123,26 @@ pub fn vector_irradiance(corners: &[Vec3<f64>]) -> Vec3<f64> {
     sum * 0.5
 }
 
+/// Whether a polygon, its corners given from the point, is seen from within its own plane: so nearly that rounding
+/// alone decides on the side. Nothing is seen of it then.
+#[inline(always)]
+pub fn is_edge_on(corners: &[Vec3<f64>]) -> bool {
+    let (mut normal, mut furthest) = (Vec3::splat(0.0), 0.0);
+    let mut before = corners[corners.len() - 1];
+    for &corner in corners {
+        normal = normal + before.cross(corner);
+        furthest = Lanes::max(furthest, corner.dot(corner));
+        before = corner;
+    }
+    !(corners[0].dot(normal).abs() > 1e-14 * normal.length() * furthest.sqrt())
+}
+
 /// Moments of orders 0 … 6 of a polygon whose corners are given from the point, the normal being z. Positive for a
-/// polygon that is counter-clockwise as seen from the point.
+/// polygon that is counter-clockwise as seen from the point; zero in its plane.
 pub fn moments(corners: &[Vec3<f64>]) -> Moments {
+    if is_edge_on(corners) {
+        return [0.0; ORDERS];
+    }
     let mut walk = Walk { arcs: [0.0; ORDERS - 1], turn: [1.0, 0.0], ends: None };
     let mut before = corners[corners.len() - 1];
     for &corner in corners {

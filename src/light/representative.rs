@@ -42,9 +42,10 @@ pub fn representative<T: Real>(
         let distance = to.dot(wi);
         let cos_light = -wi.dot(normal);
         let shines = cos_light > zero || (two_sided && cos_light < zero);
-        let solid_angle = area * cos_light.abs() / distance / distance;
+        // Of a small light; next to a large one no more than half of all directions.
+        let solid_angle = Lanes::min(area * cos_light.abs() / distance / distance, T::PI + T::PI);
         let wider = half * (area / T::PI).sqrt() / distance;
-        (shines && solid_angle.is_finite()).then_some(Representative { wi, solid_angle, wider })
+        (shines && distance > zero).then_some(Representative { wi, solid_angle, wider })
     };
     match light {
         Light::Rect(l) => {

@@ -175,6 +175,8 @@ impl<T: Real> Receiver<T> {
         let grazing = m[1] - 5.0 * m[2] + 10.0 * m[3] - 10.0 * m[4] + 5.0 * m[5] - m[6];
         let (f0, f90) = (self.lobes.base_f0.to_f64(), self.lobes.base_f90.to_f64());
         let through = (1.0 - f0) * m[1] - (f90 - f0) * grazing;
+        // Rounding may leave less than nothing; NaN goes on.
+        let through = if through < 0.0 { 0.0 } else { through };
         let factor = T::of(through) * self.lobes.transmitted(self.wo.z) / T::PI;
         let mut radiance = light.radiance();
         if let Light::Textured(shown) = light {
@@ -247,7 +249,12 @@ impl<T: Real> Receiver<T> {
         let alpha = self.lobes.alpha;
         let share = alpha / Lanes::min(alpha + point.wider, T::one());
         let factor = share * share * point.solid_angle * wi.z;
-        self.lobes.specular(wi, self.wo).times(light.radiance()) * factor
+        let reflected = (self.lobes.specular(wi, self.wo) * factor).map(
+            // By a light that is near and wide the lobe is widened and dimmed too little: never more than all comes back.
+            #[inline(always)]
+            |r| if r > T::one() { T::one() } else { r },
+        );
+        reflected.times(light.radiance())
     }
 
     /// The density of the lobe's draws, where there are any.
@@ -323,6 +330,9 @@ pub fn unshadowed_many<T: Real>(
                         let stream = (k as u64) << 40 | i as u64;
                         sum = sum + r.unshadowed(light, stream, mirrors, &mut desk);
                     }
+                    // NaN goes on, also where no light would look at it.
+                    let nan = (r.point + r.frame.z + r.wo).dot(Vec3::splat(T::zero()));
+                    sum = sum + Vec3::splat(nan);
                 }
                 *out = sum.to_array();
             }

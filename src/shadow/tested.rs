@@ -136,7 +136,10 @@ pub fn tested<T: Real, E: Stored, S: Simd, const C: usize>(
             continue;
         }
         moments[j] = filtered.means(s, *live, (feet.x, feet.y), half[j]);
-        let slope = all::<T, S>(s, granted.slope) * (gain[0] * half[j][0] + gain[1] * half[j][1]);
+        // A filter wider than numbers reach grants all there is, and none of it if none is granted.
+        let (reach, most) =
+            (gain[0] * half[j][0] + gain[1] * half[j][1], all::<T, S>(s, T::MAX * T::of(1e-6)));
+        let slope = all::<T, S>(s, granted.slope) * most.simd_lt(reach).select(most, reach);
         t[j] = filtered.warp.of(feet.depth - (feet.rounding + all::<T, S>(s, granted.constant) + slope));
     }
     let [first, second] = test.blockers(s, &moments, &t);

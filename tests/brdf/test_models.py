@@ -129,7 +129,7 @@ def test_models_without_facets_have_no_terms():
 
 
 def test_parameters_are_checked():
-    with pytest.raises(ValueError, match=r"alpha: expected a number in \(0, 1\], got 0"):
+    with pytest.raises(ValueError, match=r"alpha: expected a number in \[1e-09, 1\], got 0"):
         brdf.RoughConductor(0.0)
     with pytest.raises(ValueError, match="albedo: expected three numbers"):
         brdf.Diffuse((0.5, 0.5))

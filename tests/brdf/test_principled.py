@@ -269,3 +269,13 @@ def test_mirrors_draws_through_glass_say_that_they_cross():
     draws = brdf.Principled(1.0, roughness=1.0, spec_trans=1.0, form="2015").sample(wo, u)
     some = draws.pdf > 0
     assert np.array_equal(draws.eta[some] != 1, draws.wi[some, 2] < 0)
+
+
+@pytest.mark.parametrize("dtype", [np.float32, np.float64])
+def test_no_density_is_negative_against_the_beam(dtype):
+    """There rounding alone decides on the half vector."""
+    model = brdf.Principled(clearcoat=1.0, clearcoat_gloss=1.0)
+    wo = common.directions(100_000, 9, dtype)
+    wi = (-wo + np.random.default_rng(9).normal(size=wo.shape) * np.finfo(dtype).eps).astype(dtype)
+    density = model.pdf(wi, wo)
+    assert np.isfinite(density).all() and density.min() >= 0

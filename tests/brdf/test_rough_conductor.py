@@ -60,6 +60,66 @@ def test_draws_follow_the_density(distribution, alpha, alpha_y, cosine):
 
 
 @pytest.mark.parametrize("distribution", ["ggx", "beckmann"])
+@pytest.mark.parametrize("cosine", [0.95, 0.3, 0.05])
+def test_draws_of_v_cavities_follow_the_density(distribution, cosine):
+    """Of glass, which draws nothing below the horizon, where the density has a pole (against the beam)."""
+    model = brdf.RoughDielectric(0.3, alpha_y=0.6, distribution=distribution, masking="v_cavity")
+    assert common.samples_follow(model, common.at(cosine, 0.7)) > 1e-4
+
+
+@pytest.mark.parametrize("distribution", ["ggx", "beckmann"])
+@pytest.mark.parametrize("dtype", [np.float32, np.float64])
+@pytest.mark.parametrize("alpha", [1e-4, 0.1, 1.0])
+def test_weights_are_bounded(distribution, dtype, alpha):
+    """Of normals that are seen by one, of Beckmann's rational masking by 1.004; of V-cavities' normals by two."""
+    rng = np.random.default_rng(5)
+    z, phi = 10 ** rng.uniform(-7, 0, 50_000), rng.uniform(0, 2 * np.pi, 50_000)
+    s = np.sqrt(1 - z * z)
+    wo = np.stack([s * np.cos(phi), s * np.sin(phi), z], -1).astype(dtype)
+    u = np.minimum(rng.random((50_000, 3)), 1 - 2**-24).astype(dtype)
+    for masking, most in (("height_correlated", 1.004), ("separable", 1.004), ("v_cavity", 2)):
+        mirrors = brdf.RoughConductor(alpha, 1e-9, 1e9, distribution=distribution, masking=masking)
+        assert mirrors.sample(wo, u).weight.max() < most + 1e-4
+
+
+@pytest.mark.parametrize("distribution", ["ggx", "beckmann"])
+@pytest.mark.parametrize("masking", ["height_correlated", "separable", "schlick", "v_cavity"])
+@pytest.mark.parametrize("alpha", [1e-9, 1e-3, 0.55, 1.0])
+def test_compensation_never_takes_light(distribution, masking, alpha):
+    """The table is an approximation from both sides; what it would take away is cut off."""
+    mirrors = {"distribution": distribution, "masking": masking}
+    assert brdf.albedo_table(**mirrors).albedo.max() <= 1
+    rng = np.random.default_rng(6)
+    wi, wo = common.directions(20_000, 7, lowest=1e-7), common.directions(20_000, 8, lowest=1e-7)
+    model = brdf.RoughConductor(alpha, 1e-9, 1e9, **mirrors, compensation="kulla_conty")
+    draws = model.sample(wo, rng.random((20_000, 3)))
+    for x in (model.eval(wi, wo), model.pdf(wi, wo), draws.weight, draws.pdf):
+        assert np.isfinite(x).all() and x.min() >= 0
+
+
+@pytest.mark.parametrize("dtype", [np.float32, np.float64])
+@pytest.mark.parametrize("distribution", ["ggx", "beckmann"])
+def test_the_narrowest_lobes_are_numbers(dtype, distribution):
+    wo, u = np.array([0.6, 0, 0.8], dtype), np.array([0.3, 0.4, 0.5], dtype)
+    for model in (brdf.RoughConductor, brdf.RoughDielectric):
+        draw = model(1e-9, distribution=distribution).sample(wo, u)
+        assert np.isfinite(draw.weight).all() and draw.weight.max() > 0.4 and 0 < draw.pdf < np.inf
+
+
+@pytest.mark.parametrize("distribution", ["ggx", "beckmann"])
+@pytest.mark.parametrize("model", [brdf.RoughConductor, brdf.RoughDielectric, brdf.Plastic])
+@pytest.mark.parametrize("lane", [0, 1, 2])
+def test_no_number_gives_none(model, distribution, lane):
+    u = np.full((2, 3), 0.4)
+    u[1, lane] = np.nan
+    options = {} if model is brdf.Plastic else {"alpha": 0.3, "distribution": distribution}
+    draws = model(**options).sample(np.array([0.6, 0, 0.8]), u)
+    assert np.isfinite(draws.weight[0]).all()
+    for x in (draws.wi, draws.weight, draws.pdf, draws.eta):
+        assert np.isnan(x[1]).all()
+
+
+@pytest.mark.parametrize("distribution", ["ggx", "beckmann"])
 @pytest.mark.parametrize("masking", ["height_correlated", "separable", "v_cavity"])
 def test_no_more_comes_back_than_came(distribution, masking):
     for alpha in (0.05, 0.3, 1.0):

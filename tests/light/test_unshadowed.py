@@ -129,3 +129,64 @@ def test_ids_far_below_zero_are_no_surface():
             sl.light.PointLight((0, 2, 0)), [[0.0, 0, 0]] * 2, up, colors, wo=up, material_ids=ids
         )
         assert (got[0] == 0).all() and (got[1] > 0).all()
+
+
+@pytest.mark.parametrize("dtype", [np.float32, np.float64])
+def test_disks_are_polygons_of_many_corners_also_next_to_their_rim(dtype):
+    """Diffuse light of both with its Fresnel factor. Mirrors, which take the disk for a polygon, are left out."""
+    angle = np.arange(2048) * 2 * np.pi / 2048
+    # Equal areas; by the rim the corners are up to 1e-6 away from the circle.
+    r = np.sqrt(2 * np.pi / (2048 * np.sin(angle[1])))
+    disk = sl.light.DiskLight((0, 1, 0), (0, -1, 0), 1.0)
+    polygon = sl.light.PolygonLight(np.stack([r * np.cos(angle), np.ones(2048), r * np.sin(angle)], -1))
+    rng = np.random.default_rng(6)
+    for gap in (1e-3, 1e-2, 0.1, 1.0):
+        away, turn = 1 + gap * rng.normal(size=300), rng.uniform(0, 2 * np.pi, 300)
+        height = 1 - gap * rng.uniform(0.2, 2, 300)
+        points = np.stack([away * np.cos(turn), height, away * np.sin(turn)], -1).astype(dtype)
+        normals = rng.normal(size=(300, 3))
+        normals = (normals / np.linalg.norm(normals, axis=-1, keepdims=True)).astype(dtype)
+        a, b = (
+            sl.light.unshadowed(x, points, normals, (0.8,) * 3, 0.0, 1.0, wo=normals, samples=0)
+            for x in (disk, polygon)
+        )
+        assert 0 <= a.min() and a.max() < 0.8
+        np.testing.assert_allclose(a, b, atol=4e-7 / gap + 1e-5, rtol=0)
+
+
+LYING = [
+    sl.light.RectLight((0, 0.5, 0), (1, 0, 0), (0, 0, 1), two_sided=True),
+    sl.light.RectLight((0, 0.5, 0), (1, 0, 0), (0, 0, 1)),
+    sl.light.PolygonLight([(-1, 0.5, -1), (1, 0.5, -1), (0.9, 0.5, 1), (-1, 0.5, 1)], two_sided=True),
+    sl.light.DiskLight((0, 0.5, 0), (0, -1, 0), 0.9, two_sided=True),
+]
+
+
+@pytest.mark.parametrize("light", LYING)
+@pytest.mark.parametrize("height", [0, 1e-16, -1e-16, 1e-15, 1e-14, -1e-13, 1e-9])
+@pytest.mark.parametrize("method", ["ltc", "representative_point"])
+def test_receivers_on_the_light_get_what_light_there_is(light, height, method):
+    """In its plane, where rounding decides on the side, and a hair off it, at any tilt."""
+    rng = np.random.default_rng(7)
+    points, normals, wo = rng.uniform(-0.5, 0.5, (2000, 3)), rng.normal(size=(2000, 3)), rng.normal(size=(2000, 3))
+    points[:, 1] = 0.5 + height
+    normals /= np.linalg.norm(normals, axis=-1, keepdims=True)
+    wo /= np.linalg.norm(wo, axis=-1, keepdims=True)
+    wo[(wo * normals).sum(-1) < 0] *= -1
+    got = sl.light.unshadowed(light, points, normals, (0.8,) * 3, 0.0, 0.5, wo=wo, method=method)
+    # Albedo 0.8, and mirrors of 4 % along the normal and all at grazing.
+    assert got.min() >= 0 and got.max() < 1.9
+    if height == 0:
+        # Of sampled mirrors rounding leaves something.
+        assert got.max() < 1e-9
+    base = sl.light.ltc(light, points, normals, wo, 0.5, full_output=True).base if method == "ltc" else np.zeros(1)
+    assert 0 <= base.min() and base.max() <= 1 + 1e-3
+
+
+@pytest.mark.parametrize("light", [*LIGHTS, sl.light.SpotLight((0, 1, 0), (0, 1, 0))])
+@pytest.mark.parametrize("which", [0, 1, 2])
+def test_receivers_that_are_no_numbers_give_none(light, which):
+    given = [np.array(v, float) for v in ((0, 0, 0), (0, 1, 0), (0, 1, 0))]
+    given[which] = np.array([np.nan, 0, 0])
+    got = sl.light.unshadowed(light, given[0], given[1], (0.8,) * 3, wo=given[2])
+    assert np.isnan(got).all()

@@ -196,6 +196,25 @@ def test_evidence_needs_bounds_which_need_no_evidence():
         sl.plan(scene, (0, 10))
 
 
+@pytest.mark.parametrize("cases", [["a"], None, 3, "pcf"])
+def test_evidence_of_ones_own_may_call_something_else_cases(cases):
+    study = Study("pcf", resolution=512, samples=64, radius=8.0)
+    study.cases = cases
+    plan = sl.plan(Scene([GROUND, BOX], AREA, CAMERA), evidence=study, max_error=0.02)
+    assert "measured: error" in plan.find("shadow").reason
+
+
+@pytest.mark.parametrize("lack", [{"knobs": None}, {"knobs": 3}, {"ms": None}, {"technique": None}, {"error": None}])
+def test_evidence_whose_choice_lacks_something_is_refused(lack):
+    study = Study("pcf", resolution=512)
+    vars(study.choice).update(lack)
+    with pytest.raises((TypeError, ValueError), match="evidence: expected"):
+        sl.plan(Scene([GROUND, BOX], AREA, CAMERA), evidence=study, max_error=0.02)
+    study.choice = SimpleNamespace(technique="pcf", knobs={}, error=float("nan"), ms=1.0)
+    with pytest.raises(ValueError, match="evidence: expected an error of at most"):
+        sl.plan(Scene([GROUND, BOX], AREA, CAMERA), evidence=study, max_error=0.02)
+
+
 def test_prints_and_shows_itself():
     plan = sl.plan(Scene([GROUND, BOX], AREA, CAMERA))
     text, table = str(plan), plan._repr_html_()

@@ -272,7 +272,7 @@ def albedo_table(
     ----------
     distribution : {"ggx", "beckmann"}
     masking : {"height_correlated", "separable", "schlick", "v_cavity"}
-        Of reflection; what is refracted takes Smith's separable form.
+        Of reflection; what is refracted takes Smith's separable form, or the product of what two V-cavities show.
     eta : float, optional
         Of rough glass, light reflected and passed together: index across the interface over that on the side of the
         light, in [1e-9, 1e9]. None is the perfect mirror of `kulla_conty`.
@@ -290,7 +290,7 @@ def albedo_table(
     Notes
     -----
     Made by quadrature over drawn normals, once a program: the mirror's in about 0.1 s, of glass the two slabs about an
-    index when it is first asked for. Between the 32 slabs on either side of η = 1 tables are
+    index when it is first asked for. Between the 64 slabs on either side of η = 1 tables are
     interpolated: averages are within 0.0015, of alpha from 1e-4 on.
 
     Examples

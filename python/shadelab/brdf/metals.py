@@ -71,7 +71,7 @@ class RoughConductor(_Rough):
     Parameters
     ----------
     alpha : array_like
-        Width of the distribution of normals (along x), in (0, 1]; the square of an artist's roughness.
+        Width of the distribution of normals (along x), in [1e-9, 1]; the square of an artist's roughness.
     eta, k : array_like, shape (..., 3)
         Index in [1e-9, 1e9] and extinction in [0, 1e9] per channel; copper if not given.
     alpha_y : array_like, optional
@@ -89,11 +89,12 @@ class RoughConductor(_Rough):
     -----
     Without compensation what mirrors hide from each other is lost (`white_furnace` says how much). Normals are
     drawn as they are seen from `wo`, so that weights are at most one (of Beckmann's 1.004: see
-    `masking_shadowing`). A draw of GGX takes some 90 ns on one thread, one of Beckmann, whose slopes are found by
-    Newton's steps, 330. With two widths the compensation takes the mean of those that directions about see: where
-    one is ten times the other, up to 2 % of white metal's light is still lost. In float32 a half vector does not
-    resolve Beckmann facets narrower than 0.01 at cosines below 1e-3, and light is lost there: 1 % at alpha = 1e-3,
-    most of it at 1e-5. GGX loses none.
+    `masking_shadowing`); those of V-cavities by D cos, with weights of at most two. Draws of a compensating lobe weigh
+    more where it has little: 150 at alpha = 1e-3. A draw of GGX takes some 90 ns on one thread, one of Beckmann,
+    whose slopes are found by Newton's steps, 330. With two widths the compensation takes the mean of those that
+    directions about see: where one is ten times the other, up to 2 % of white metal's light is still lost, of
+    Beckmann's or by "scaled" 3.3 %. In float32 a half vector does not resolve Beckmann facets narrower than 0.01 at
+    cosines below 1e-3, and light is lost there: 1 % at alpha = 1e-3, most of it at 1e-5. GGX loses none.
 
     References
     ----------
@@ -106,10 +107,10 @@ class RoughConductor(_Rough):
     array([0.3031, 0.1972, 0.1625])
     """
 
-    alpha: Any = parameter(0.1, 0, high=1.0, above=0.0)
+    alpha: Any = parameter(0.1, 0, LEAST, 1.0)
     eta: Any = parameter(COPPER_ETA, 3, LEAST, MOST)
     k: Any = parameter(COPPER_K, 3, 0.0, MOST)
-    alpha_y: Any = parameter(None, 0, high=1.0, above=0.0)
+    alpha_y: Any = parameter(None, 0, LEAST, 1.0)
     distribution: Literal["ggx", "beckmann"] = option("ggx", SHAPES)
     masking: Literal["height_correlated", "separable", "schlick", "v_cavity"] = option("height_correlated", MASKINGS)
     tint: Any = color((1.0, 1.0, 1.0))

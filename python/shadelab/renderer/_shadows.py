@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from typing import Any
 
 import numpy as np
@@ -32,11 +32,16 @@ def picked(evidence: Any, max_error: float | None, budget_ms: float | None) -> t
     if not callable(getattr(evidence, "pick", None)):
         raise TypeError(f"evidence: expected the result of a study, got {type(evidence).__name__}")
     choice = evidence.pick(**asked)
-    if choice is not None and choice.technique not in _TECHNIQUES:
+    if choice is not None and getattr(choice, "technique", None) not in _TECHNIQUES:
         # The question measures more than pictures are rendered by.
         choice = evidence.pick(**asked, techniques=_TECHNIQUES)
     if choice is None:
         raise ValueError(f"evidence: nothing that was measured keeps {asked}")
+    lacks = [name for name in ("technique", "knobs", "error", "ms") if getattr(choice, name, None) is None]
+    if lacks or not isinstance(choice.knobs, Mapping):
+        raise TypeError(f"evidence: expected a choice with technique, knobs, error and ms, got {choice!r}")
+    if not choice.error <= asked.get("max_error", choice.error):
+        raise ValueError(f"evidence: expected an error of at most {asked['max_error']:g}, got {choice.error}")
     if choice.technique not in _TECHNIQUES:
         raise ValueError(f"evidence: expected a technique among {', '.join(_TECHNIQUES)}, got {choice.technique!r}")
     wanted = " and ".join(f"{k} {v:g}" for k, v in asked.items())
@@ -46,7 +51,9 @@ def picked(evidence: Any, max_error: float | None, budget_ms: float | None) -> t
     price = f"{choice.ms:.3g} ms"
     if unit != "ms":
         price += f" and {choice.cost_interval.value * scale:.3g} {unit}"
+    # Those of a study have names and sizes; others may call something else so.
     cases = getattr(evidence, "cases", ())
+    cases = [c for c in cases if hasattr(c, "name") and hasattr(c, "size")] if isinstance(cases, Sequence) else []
     where = "; ".join(f"{c.name} at {c.size[0]} × {c.size[1]}" for c in cases[:2])
     where += f" and {len(cases) - 2} more" if len(cases) > 2 else ""
     reason = f"measured{f' on {where}' if where else ''}: error {choice.error:.3g} in {price}, the choice for {wanted}"

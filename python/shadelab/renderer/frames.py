@@ -7,6 +7,7 @@ import zlib
 from collections.abc import Mapping
 from dataclasses import dataclass
 from pathlib import Path
+from typing import get_args
 
 import numpy as np
 from numpy.typing import NDArray
@@ -99,6 +100,7 @@ def displayed(radiance: Floats, exposure: float | None = None, tone_map: str = "
         factor = 0.8 / peak if peak > 0 else 1.0
     else:
         factor = _arrays.number("exposure", exposure, above=0.0)
+    _arrays.choice("tone_map", tone_map, get_args(color.ToneMap))
     mapped = color.tone_map(radiance * np.float32(factor), tone_map)  # type: ignore[arg-type]
     encoded = color.encode_transfer(np.clip(np.nan_to_num(mapped), 0, 1))
     return np.asarray(encoded * 255 + 0.5, np.uint8)

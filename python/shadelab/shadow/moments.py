@@ -215,8 +215,8 @@ def moment_map(
     -----
     Moments may be averaged as depths may not: filtering before the lookup equals filtering in it. A filter wide against
     the map blurs the depths of one surface too; see `moment` for what biases then ask. Outside of the map lie the
-    nearest texels. Cost: C values a texel, one pass over the depths, and that of the filter
-    (`shadelab.image.gaussian_filter`, `mip_chain`, `summed_area_table`).
+    nearest texels, but boxes of "summed_area" are cut at its border. Cost: C values a texel, one pass over the depths,
+    and that of the filter (`shadelab.image.gaussian_filter`, `mip_chain`, `summed_area_table`).
 
     References
     ----------

@@ -154,6 +154,9 @@ pub fn outline<T: Real>(light: &Light<T>, point: Vec3<f64>, corners: &mut Vec<Ve
         _ => return false,
     };
     let side = -to.dot(normal);
+    if polygon::is_edge_on(corners) {
+        return false;
+    }
     if side < 0.0 && two_sided {
         corners.reverse();
         return true;
