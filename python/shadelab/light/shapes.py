@@ -175,16 +175,21 @@ class PolygonLight:
 def _crosses_itself(corners: NDArray[np.float64], twice: NDArray[np.float64]) -> bool:
     """Whether two edges of a planar polygon that are no neighbours have a point in common."""
     axis = int(np.argmax(np.abs(twice)))
-    flat = np.delete(corners, axis, 1)
-    start, end = flat, np.roll(flat, -1, 0)
+    start = np.delete(corners, axis, 1)
+    end, n = np.roll(start, -1, 0), len(corners)
 
-    def side(p: NDArray[np.float64]) -> NDArray[np.float64]:
-        """On which side of edge i point j lies."""
-        (ax, ay), (px, py) = (end - start).T[..., None], (p[None] - start[:, None]).transpose(2, 0, 1)
-        return np.asarray(np.sign(ax * py - ay * px))
+    def straddled(edges: slice, others: slice) -> NDArray[np.bool_]:
+        """Whether the ends of each of the others lie on either side of each edge's line: (edges, others)."""
+        (x, y), origin = (end - start)[edges].T[..., None], start[edges, None]
+        from_, to = (np.moveaxis(p[None, others] - origin, -1, 0) for p in (start, end))
+        return np.asarray(np.sign(x * from_[1] - y * from_[0]) * np.sign(x * to[1] - y * to[0]) < 0)
 
-    n = len(flat)
-    first, last = side(start), side(end)
-    apart = np.subtract.outer(np.arange(n), np.arange(n)) % n
-    crossing = (first * last < 0) & (first * last < 0).T & (apart > 1) & (apart < n - 1)
-    return bool(crossing.any())
+    # So many edges at a time that memory stays small.
+    every, some = slice(None), max(1, (1 << 20) // n)
+    for first in range(0, n, some):
+        few = slice(first, first + some)
+        apart = np.subtract.outer(np.arange(n)[few], np.arange(n)) % n
+        crossing = straddled(few, every) & straddled(every, few).T & (apart > 1) & (apart < n - 1)
+        if crossing.any():
+            return True
+    return False
