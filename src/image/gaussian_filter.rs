@@ -7,6 +7,7 @@ use crate::dispatch;
 use crate::parallel::{self, Interrupted, Rows, Watch};
 use crate::real::Real;
 use crate::simd::*;
+use std::sync::atomic::{AtomicBool, Ordering};
 
 /// What lies beyond the picture's border.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -75,13 +76,14 @@ pub fn gaussian_filter<T: Real>(
     let reach = downward.len() - 1;
     // Bands well above the reach: what is filtered twice at their borders stays a small share.
     let band = BAND.max(4 * reach).min(height.max(1));
-    let limit = ((1usize << 26) / (row * (across.len() + downward.len())).max(1)).clamp(1, band);
-    parallel::for_each(watch, Rows { data: out, width: row }, limit, |first, out| {
+    // Some tens of milliseconds.
+    let long = row * band * (across.len() + downward.len()) > 1 << 26;
+    parallel::for_each_stoppable(watch, Rows { data: out, width: row }, band, long, |first, out, stop| {
         let rows = out.data.len() / row;
         let mut line = vec![T::zero(); row + 2 * (across.len() - 1) * channels];
         let mut done = vec![T::zero(); stride(row) * (rows + 2 * reach)];
         let plan = Plan { image, width, height, channels, across, downward, border };
-        dispatch!(s => plan.band(s, first, rows, &mut line, &mut done, out.data));
+        dispatch!(s => plan.band(s, first, rows, &mut line, &mut done, out.data, stop));
     })
 }
 
@@ -102,12 +104,24 @@ struct Plan<'a, T> {
 }
 
 impl<T: Real> Plan<'_, T> {
-    /// Rows `first`… of the result: each row around them across, then down.
+    /// Rows `first`… of the result: each row around them across, then down. Returns soon once `stop` is set.
     #[inline(always)]
-    fn band<S: Simd>(&self, s: S, first: usize, rows: usize, line: &mut [T], done: &mut [T], out: &mut [T]) {
+    fn band<S: Simd>(
+        &self,
+        s: S,
+        first: usize,
+        rows: usize,
+        line: &mut [T],
+        done: &mut [T],
+        out: &mut [T],
+        stop: &AtomicBool,
+    ) {
         let row = self.width * self.channels;
         let (stride, reach) = (stride(row), self.downward.len() - 1);
         for i in 0..rows + 2 * reach {
+            if stop.load(Ordering::Relaxed) {
+                return;
+            }
             let y = self.border.at(first as isize + i as isize - reach as isize, self.height);
             self.spread(y, line);
             correlate(s, line, self.channels, self.across, &mut done[i * stride..i * stride + row]);
@@ -117,6 +131,9 @@ impl<T: Real> Plan<'_, T> {
         while x < row {
             let wide = STRIP.min(row - x);
             for i in 0..rows {
+                if stop.load(Ordering::Relaxed) {
+                    return;
+                }
                 let end = (i + 2 * reach) * stride + x + wide;
                 correlate(
                     s,
