@@ -211,7 +211,7 @@ def test_evidence_whose_choice_lacks_something_is_refused(lack):
     with pytest.raises((TypeError, ValueError), match="evidence: expected"):
         sl.plan(Scene([GROUND, BOX], AREA, CAMERA), evidence=study, max_error=0.02)
     study.choice = SimpleNamespace(technique="pcf", knobs={}, error=float("nan"), ms=1.0)
-    with pytest.raises(ValueError, match="evidence: expected an error of at most"):
+    with pytest.raises(ValueError, match="evidence: expected an error and a time"):
         sl.plan(Scene([GROUND, BOX], AREA, CAMERA), evidence=study, max_error=0.02)
 
 
