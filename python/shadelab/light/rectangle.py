@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass, field
-from hashlib import sha256
 from typing import Any
 from weakref import WeakKeyDictionary
 
@@ -89,6 +88,9 @@ class RectLight:
         if self.texture is not None:
             texture = _picture(self.texture, max(self.radiance))
             object.__setattr__(self, "texture", texture)
+            # Imported here: it takes longer than the rest of the chapter, and few lights show a picture.
+            from hashlib import sha256
+
             object.__setattr__(self, "_content", sha256(texture.tobytes()).hexdigest()[:16] + f" {texture.shape}")
         # By hypot, since squares of what is small are none.
         lengths = [math.hypot(*e) for e in (self.edge_u, self.edge_v)]
