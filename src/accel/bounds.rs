@@ -4,12 +4,22 @@ use crate::dispatch;
 use crate::real::{Lanes, Real};
 use crate::simd::{Simd, SimdBase};
 use rayon::prelude::*;
+use std::sync::atomic::{AtomicBool, Ordering};
 
 /// Lists longer than this are worth more than one thread.
 pub const LARGE: usize = 1 << 14;
 
 /// The exact bounds of all triangles; zeros if there are none.
 pub fn scene_bounds<T: Real>(positions: &[[T; 3]], faces: &[[i32; 3]]) -> [[T; 3]; 2] {
+    scene_bounds_until(&AtomicBool::new(false), positions, faces)
+}
+
+/// The same, and of no use once `stop` is set.
+pub fn scene_bounds_until<T: Real>(
+    stop: &AtomicBool,
+    positions: &[[T; 3]],
+    faces: &[[i32; 3]],
+) -> [[T; 3]; 2] {
     if faces.is_empty() {
         return [[T::zero(); 3]; 2];
     }
@@ -18,7 +28,10 @@ pub fn scene_bounds<T: Real>(positions: &[[T; 3]], faces: &[[i32; 3]]) -> [[T; 3
         let low = std::array::from_fn(|k| Lanes::min(a[0][k], b[0][k]));
         [low, std::array::from_fn(|k| Lanes::max(a[1][k], b[1][k]))]
     };
-    let of = |faces: &[[i32; 3]]| dispatch!(s => bounds_of(s, positions, faces));
+    let of = |faces: &[[i32; 3]]| {
+        let faces = if stop.load(Ordering::Relaxed) { &[] } else { faces };
+        dispatch!(s => bounds_of(s, positions, faces))
+    };
     let [[a, b, c, _], [x, y, z, _]] = faces.par_chunks(LARGE).map(of).reduce(empty, merge);
     [[a, b, c], [x, y, z]]
 }

@@ -5,6 +5,7 @@
 use super::bounds::LARGE;
 use crate::memory;
 use rayon::prelude::*;
+use std::sync::atomic::{AtomicBool, Ordering};
 
 /// Bits by which integers are told apart first: as many parts as addresses that a core can follow while it writes.
 const FIRST: u32 = 11;
@@ -20,7 +21,9 @@ const LONG: usize = 1 << 17;
 pub const BITS: u32 = FIRST + DIGIT * PASSES;
 
 /// Sorts integers of `bits` bits, all different, whose order by what lies below the upper [`BITS`] is right already.
-pub fn sort(mut keys: Vec<u64>, bits: u32) -> Vec<u64> {
+/// Leaves them as they come once `stop` is set.
+pub fn sort(mut keys: Vec<u64>, bits: u32, stop: &AtomicBool) -> Vec<u64> {
+    let going = || !stop.load(Ordering::Relaxed);
     let n = keys.len();
     if n <= LARGE {
         keys.sort_unstable();
@@ -29,9 +32,10 @@ pub fn sort(mut keys: Vec<u64>, bits: u32) -> Vec<u64> {
     let part = |key: u64| (key >> (bits - FIRST)) as usize & ((1 << FIRST) - 1);
     let chunk = (4 * LARGE).max(n.div_ceil(64));
     let counts: Vec<Vec<u32>> = keys.par_chunks(chunk).map(|keys| count(keys, 1 << FIRST, part)).collect();
-    let mut parted = memory::list(n);
-    parted.resize(n, 0);
-    scatter(&keys, &mut parted, chunk, &counts, part);
+    let mut parted = memory::zeros(n, stop);
+    if going() {
+        scatter(&keys, &mut parted, chunk, &counts, part);
+    }
     let sizes: Vec<usize> = (0..1 << FIRST).map(|p| counts.iter().map(|c| c[p] as usize).sum()).collect();
     let mut parts = Vec::with_capacity(1 << FIRST);
     let (mut from, mut to) = (&mut parted[..], &mut keys[..]);
@@ -43,7 +47,7 @@ pub fn sort(mut keys: Vec<u64>, bits: u32) -> Vec<u64> {
             parts.push((a, b));
         }
     }
-    parts.into_par_iter().for_each(|(a, b)| finish(a, b, bits - BITS));
+    parts.into_par_iter().filter(|_| going()).for_each(|(a, b)| finish(a, b, bits - BITS));
     keys
 }
 
@@ -131,7 +135,7 @@ mod tests {
                 let keys = keys(n, crowd);
                 let mut expected = keys.clone();
                 expected.sort_unstable();
-                assert_eq!(sort(keys, 64), expected, "{n} {crowd}");
+                assert_eq!(sort(keys, 64, &AtomicBool::new(false)), expected, "{n} {crowd}");
             }
         }
     }

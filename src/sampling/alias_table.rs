@@ -5,11 +5,28 @@
 //! M. D. Vose, *A linear algorithm for generating random numbers with a given distribution*, 1991.
 
 use super::tabulated::{Invalid, total};
+use crate::parallel::{self, Interrupted, Watch};
 use crate::real::Real;
+use std::sync::atomic::{AtomicBool, Ordering};
 
 /// Fills, for each column, the share that keeps its own index, and the index that the rest goes to. Shares are summed in
 /// f64; an index without weight keeps none, and is nobody's alias.
-pub fn alias_table<T: Real>(weights: &[T], share: &mut [T], alias: &mut [u32]) -> Result<(), Invalid> {
+pub fn alias_table<T: Real>(
+    watch: &mut dyn Watch,
+    weights: &[T],
+    share: &mut [T],
+    alias: &mut [u32],
+) -> Result<Result<(), Invalid>, Interrupted> {
+    parallel::run_forking(watch, |stop| fill(weights, share, alias, stop))
+}
+
+/// Returns soon once `stop` is set.
+fn fill<T: Real>(
+    weights: &[T],
+    share: &mut [T],
+    alias: &mut [u32],
+    stop: &AtomicBool,
+) -> Result<(), Invalid> {
     let n = weights.len();
     if n == 0 || n > u32::MAX as usize {
         return Err(Invalid::Length(n));
@@ -26,7 +43,12 @@ pub fn alias_table<T: Real>(weights: &[T], share: &mut [T], alias: &mut [u32]) -
         weights.iter().map(|w| w.to_f64() / largest.max(1e-300) / total * n as f64).collect();
     // Columns not full, and those that overflow; the last to overflow fills what rounding leaves.
     let (mut small, mut large): (Vec<u32>, Vec<u32>) = (0..n as u32).partition(|&i| left[i as usize] < 1.0);
+    let mut steps = 0u32;
     while let (Some(&s), Some(&l)) = (small.last(), large.last()) {
+        steps += 1;
+        if steps.is_multiple_of(1 << 16) && stop.load(Ordering::Relaxed) {
+            return Ok(());
+        }
         small.pop();
         share[s as usize] = T::of(left[s as usize]);
         alias[s as usize] = l;

@@ -5,11 +5,13 @@ use crate::accel::bounds::LARGE;
 use crate::memory;
 use crate::real::{Lanes, Real};
 use crate::simd::{Simd, SimdBase, f32x8};
+use bytemuck::Zeroable;
 use fearless_simd::{SimdCombine, SimdSplit};
 use rayon::prelude::*;
+use std::sync::atomic::{AtomicBool, Ordering};
 
 /// Lower bounds, something, negated upper bounds, something.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Copy, Debug, Zeroable)]
 #[repr(C, align(32))]
 pub struct Bounds(pub [f32; 8]);
 
@@ -44,7 +46,7 @@ pub fn centre<S: Simd>(bounds: f32x8<S>) -> f32x8<S> {
 }
 
 /// A triangle's box. The face's number stands in the last lane, as the bits of a normal number.
-#[derive(Clone, Copy)]
+#[derive(Clone, Copy, Zeroable)]
 #[repr(transparent)]
 pub struct Item(pub Bounds);
 
@@ -93,17 +95,31 @@ impl Relative {
         }
         centre
     }
-    pub fn points<T: Real>(&self, positions: &[[T; 3]]) -> Vec<[f32; 3]> {
+    fn points<T: Real>(&self, positions: &[[T; 3]], stop: &AtomicBool) -> Vec<[f32; 3]> {
         let one = |p: &[T; 3], k: usize| ((p[k].to_f64() - self.low[k]) * self.scale) as f32;
         let point = |p: &[T; 3]| [one(p, 0), one(p, 1), one(p, 2)];
-        positions.par_iter().with_min_len(LARGE).map(point).collect()
+        let mut points = memory::zeros::<[f32; 3]>(positions.len(), stop);
+        points.par_chunks_mut(LARGE).zip(positions.par_chunks(LARGE)).for_each(|(points, positions)| {
+            if !stop.load(Ordering::Relaxed) {
+                points.iter_mut().zip(positions).for_each(|(to, from)| *to = point(from));
+            }
+        });
+        points
     }
 }
 
-/// A box for each face.
-pub fn items<T: Real>(positions: &[[T; 3]], faces: &[[i32; 3]], relative: Relative) -> Vec<Item> {
-    let points = relative.points(positions);
+/// A box for each face; of no use once `stop` is set.
+pub fn items<T: Real>(
+    positions: &[[T; 3]],
+    faces: &[[i32; 3]],
+    relative: Relative,
+    stop: &AtomicBool,
+) -> Vec<Item> {
+    let points = relative.points(positions, stop);
     let item = |face: usize| {
+        if stop.load(Ordering::Relaxed) {
+            return Item(Bounds::EMPTY);
+        }
         let [a, b, c] = faces[face].map(|v| points[v as usize]);
         let low = [least(a[0], b[0], c[0]), least(a[1], b[1], c[1]), least(a[2], b[2], c[2])];
         let high = [-least(-a[0], -b[0], -c[0]), -least(-a[1], -b[1], -c[1]), -least(-a[2], -b[2], -c[2])];

@@ -15,6 +15,7 @@ use crate::dispatch;
 use crate::memory;
 use crate::real;
 use crate::simd::{Simd, SimdBase, f32x4, f32x8};
+use bytemuck::Zeroable;
 use fearless_simd::{SimdCvtTruncate, SimdSplit, i32x4};
 use rayon::prelude::*;
 use std::sync::atomic::{AtomicBool, Ordering};
@@ -35,7 +36,7 @@ pub enum Split {
 }
 
 /// A node of the binary tree over the items `first .. first + count`. Its left child follows it; `right` is 0 at leaves.
-#[derive(Clone, Copy)]
+#[derive(Clone, Copy, Zeroable)]
 pub struct Branch {
     pub first: u32,
     pub count: u32,
@@ -43,16 +44,10 @@ pub struct Branch {
     pub cut: Cut,
 }
 
-impl Branch {
-    pub const EMPTY: Branch = Branch { first: 0, count: 0, right: 0, cut: Cut::LEAF };
-}
-
 /// The binary tree over `items`, which it orders. Cut short, and of no use, once `stop` is set.
 pub fn binary_tree(items: &mut [Item], split: Split, stop: &AtomicBool) -> Vec<Branch> {
-    let mut branches = memory::list((2 * items.len()).max(1));
-    branches.resize((2 * items.len()).max(1), Branch::EMPTY);
-    let mut scratch = memory::list(items.len());
-    scratch.extend_from_slice(items);
+    let mut branches = memory::zeros::<Branch>((2 * items.len()).max(1), stop);
+    let mut scratch = memory::zeros::<Item>(items.len(), stop);
     dispatch!(s => {
         let centres = reduce(items, |items| centres_of(s, items), merged);
         let list = List { items, scratch: &mut scratch, first: 0, out: &mut branches, at: 0, centres };

@@ -11,6 +11,7 @@ use crate::accel::block::{BLOCK, Block};
 use crate::memory;
 use crate::real::Real;
 use rayon::prelude::*;
+use std::sync::atomic::{AtomicBool, Ordering};
 
 /// Parts of more triangles than this are spread over threads.
 const TASK: usize = 1 << 13;
@@ -132,9 +133,12 @@ pub struct Plan {
 }
 
 impl Plan {
-    fn new<B: Tree>(tree: &B, part: B::Part) -> Self {
+    fn new<B: Tree>(tree: &B, part: B::Part, stop: &AtomicBool) -> Self {
         let (first, count, leaf) = tree.span(part);
         let mut plan = Plan { first, nodes: 0, blocks: 0, below: vec![], children: vec![], leaves: vec![] };
+        if stop.load(Ordering::Relaxed) {
+            return plan;
+        }
         if leaf || count <= TASK {
             plan.children.reserve(count / (4 * BLOCK));
             plan.leaves.reserve(count / 2);
@@ -142,7 +146,7 @@ impl Plan {
             plan.nodes = plan.children.len();
             return plan;
         }
-        plan.below = tree.front(part).parts().par_iter().map(|&p| Plan::new(tree, p)).collect();
+        plan.below = tree.front(part).parts().par_iter().map(|&p| Plan::new(tree, p, stop)).collect();
         plan.nodes = 1 + plan.below.iter().map(|p| p.nodes).sum::<usize>();
         plan.blocks = plan.below.iter().map(|p| p.blocks).sum();
         plan
@@ -165,24 +169,34 @@ impl Plan {
     }
 }
 
-/// The wide tree below `root`.
+/// The wide tree below `root`; an empty one once `stop` is set.
 pub fn collapse<T: Real, B: Tree>(
     tree: &B,
     root: B::Part,
     positions: &[[T; 3]],
     faces: &[[i32; 3]],
+    stop: &AtomicBool,
 ) -> Wide<T> {
-    if faces.is_empty() {
-        return Wide { nodes: vec![Node::empty()], blocks: vec![] };
+    let stopped = || stop.load(Ordering::Relaxed);
+    let empty = || Wide { nodes: vec![Node::empty()], blocks: vec![] };
+    // What was cut short is no tree.
+    if faces.is_empty() || stopped() {
+        return empty();
     }
-    let plan = Plan::new(tree, root);
+    let plan = Plan::new(tree, root, stop);
+    if stopped() {
+        return empty();
+    }
     // A leaf at the root is the only child of a node.
     let nodes_len = plan.nodes.max(1);
     let mut nodes = memory::list(nodes_len);
     let mut blocks = memory::list(plan.blocks);
     let out = Stretch::new(nodes.spare_capacity_mut(), &mut blocks.spare_capacity_mut()[..plan.blocks]);
-    Mesh { tree, positions, faces }.emit_root(&plan, out);
-    // Sound: every node and block that was planned has been written.
+    Mesh { tree, positions, faces, stop }.emit_root(&plan, out);
+    if stopped() {
+        return empty();
+    }
+    // Sound: every node and block that was planned has been written, since nobody was told to stop.
     unsafe {
         nodes.set_len(nodes_len);
         blocks.set_len(plan.blocks);

@@ -4,13 +4,14 @@
 //! H. Ylitie, T. Karras, S. Laine, *Efficient Incoherent Ray Traversal on GPUs Through Compressed Wide BVHs*, 2017, section 3.
 
 use super::node::WIDTH;
+use bytemuck::Zeroable;
 
 /// The least cost of a subtree as at most `i + 1` children of the node above it.
 #[derive(Clone, Copy)]
 pub struct Costs([f32; WIDTH - 1]);
 
 /// How the least costs come about: how many child slots the left half takes.
-#[derive(Clone, Copy)]
+#[derive(Clone, Copy, Zeroable)]
 pub struct Cut {
     /// As a node of its own; 0 where a leaf is cheaper.
     node: u8,

@@ -9,6 +9,7 @@ use crate::real::{Lanes, Real};
 use crate::simd::{Simd, SimdBase};
 use rayon::prelude::*;
 use std::mem::MaybeUninit;
+use std::sync::atomic::{AtomicBool, Ordering};
 
 /// Where a part is written: its stretches of the final arrays, and the indices at which they begin.
 pub struct Stretch<'a, T> {
@@ -47,6 +48,8 @@ pub struct Mesh<'a, T, B> {
     pub tree: &'a B,
     pub positions: &'a [[T; 3]],
     pub faces: &'a [[i32; 3]],
+    /// Once it is set, nothing more is written.
+    pub stop: &'a AtomicBool,
 }
 
 impl<T: Real, B: Tree> Mesh<'_, T, B> {
@@ -64,6 +67,9 @@ impl<T: Real, B: Tree> Mesh<'_, T, B> {
 
     /// Writes a part as planned; what refers to it, and its box.
     fn emit(&self, plan: &Plan, out: Stretch<T>) -> (Child, Corners<T>) {
+        if self.stop.load(Ordering::Relaxed) {
+            return (Child::EMPTY, [[T::zero(); 4]; 2]);
+        }
         if plan.below.is_empty() {
             return dispatch!(s => self.emit_part(s, plan, out));
         }

@@ -17,6 +17,7 @@ use crate::memory;
 use crate::real::Real;
 use crate::simd::Simd;
 use rayon::prelude::*;
+use std::sync::atomic::{AtomicBool, Ordering};
 
 /// Levels after which intervals are halved; what halving needs at most is in reserve.
 const CODED: u32 = MAX_DEPTH as u32 - 28;
@@ -46,10 +47,18 @@ pub struct Interval {
 }
 
 impl Sorted {
-    pub fn new<T: Real>(positions: &[[T; 3]], faces: &[[i32; 3]], relative: Relative) -> Self {
-        let mut keys = memory::list(faces.len());
-        keys.resize(faces.len(), 0);
+    /// Of no use once `stop` is set.
+    pub fn new<T: Real>(
+        positions: &[[T; 3]],
+        faces: &[[i32; 3]],
+        relative: Relative,
+        stop: &AtomicBool,
+    ) -> Self {
+        let mut keys = memory::zeros::<u64>(faces.len(), stop);
         keys.par_chunks_mut(LARGE).enumerate().for_each(|(chunk, keys)| {
+            if stop.load(Ordering::Relaxed) {
+                return;
+            }
             let first = chunk * LARGE;
             let faces = &faces[first..first + keys.len()];
             dispatch!(s => write_codes(s, positions, faces, relative, keys));
@@ -57,7 +66,10 @@ impl Sorted {
                 *key = *key >> LOWER_BITS << FACE_BITS | (first + i) as u64;
             }
         });
-        let mut sorted = Sorted { keys: radix::sort(keys, 64), lower: vec![] };
+        let mut sorted = Sorted { keys: radix::sort(keys, 64, stop), lower: vec![] };
+        if stop.load(Ordering::Relaxed) {
+            return sorted;
+        }
         sorted.sort_lower(|face| {
             let mut code = [0];
             let face = &faces[face..face + 1];

@@ -33,7 +33,6 @@ use crate::parallel::{self, Interrupted, Watch};
 use crate::real::Real;
 use crate::simd::Simd;
 use node::{Child, Node};
-use std::sync::atomic::Ordering;
 
 /// A tree of boxes, eight children a node, over triangles in blocks of four.
 pub struct Bvh<T> {
@@ -69,21 +68,19 @@ impl<T: Real> Bvh<T> {
     ) -> Result<Self, Interrupted> {
         assert!(faces.len() <= Self::MAX_FACES);
         parallel::run_forking(watch, |stop| {
-            let scene = bounds::scene_bounds(positions, faces);
+            let scene = bounds::scene_bounds_until(stop, positions, faces);
             let relative = boxes::Relative::to(&scene);
             let wide = match method {
                 Method::Lbvh => {
-                    let sorted = lbvh::Sorted::new(positions, faces, relative);
-                    collapse::collapse(&sorted, sorted.root(), positions, faces)
+                    let sorted = lbvh::Sorted::new(positions, faces, relative, stop);
+                    collapse::collapse(&sorted, sorted.root(), positions, faces, stop)
                 }
                 Method::Sah | Method::Median => {
                     let split = if method == Method::Sah { build::Split::Sah } else { build::Split::Median };
-                    let mut items = boxes::items(positions, faces, relative);
+                    let mut items = boxes::items(positions, faces, relative, stop);
                     let branches = build::binary_tree(&mut items, split, stop);
-                    // What was cut short is of no use, nor is it a tree.
-                    let faces = if stop.load(Ordering::Relaxed) { &[] } else { faces };
                     let cuts = collapse::Cuts { items: &items, branches: &branches };
-                    collapse::collapse(&cuts, 0, positions, faces)
+                    collapse::collapse(&cuts, 0, positions, faces, stop)
                 }
             };
             let few = few::Few::new(positions, faces);

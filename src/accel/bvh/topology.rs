@@ -12,6 +12,7 @@ use crate::accel::bounds;
 use crate::parallel::{self, Interrupted, Watch};
 use crate::real::Real;
 use rayon::prelude::*;
+use std::sync::atomic::{AtomicBool, Ordering};
 
 const MAGIC: &[u8; 16] = b"shadelab.BVH.001";
 const HEADER: usize = 40;
@@ -41,7 +42,7 @@ impl<T: Real> Bvh<T> {
         faces: &[[i32; 3]],
     ) -> Result<Self, Interrupted> {
         assert_eq!(faces.len(), self.faces);
-        parallel::run_forking(watch, |_| self.topology().place(positions, faces))
+        parallel::run_forking(watch, |stop| self.topology().place(positions, faces, stop))
     }
 
     pub fn to_bytes(&self) -> Vec<u8> {
@@ -66,10 +67,10 @@ impl<T: Real> Bvh<T> {
         positions: &[[T; 3]],
         faces: &[[i32; 3]],
     ) -> Result<Result<Self, String>, Interrupted> {
-        parallel::run_forking(watch, |_| {
+        parallel::run_forking(watch, |stop| {
             let topology = Topology::read(bytes)?;
             topology.check(faces.len())?;
-            Ok(topology.place(positions, faces))
+            Ok(topology.place(positions, faces, stop))
         })
     }
 }
@@ -152,17 +153,19 @@ impl Topology {
         if whole { Ok(()) } else { Err("bad: faces are missing".into()) }
     }
 
-    /// The tree over a mesh.
-    fn place<T: Real>(&self, positions: &[[T; 3]], faces: &[[i32; 3]]) -> Bvh<T> {
+    /// The tree over a mesh; of no use once `stop` is set.
+    fn place<T: Real>(&self, positions: &[[T; 3]], faces: &[[i32; 3]], stop: &AtomicBool) -> Bvh<T> {
+        let going = || !stop.load(Ordering::Relaxed);
         let corners = |face: i32| faces[face as usize].map(|v| positions[v as usize]);
-        let block =
-            |four: &[i32; BLOCK]| Block::new(four.iter().filter(|&&f| f >= 0).map(|&f| (f, corners(f))));
+        let block = |four: &[i32; BLOCK]| {
+            Block::new(four.iter().filter(|&&f| f >= 0 && going()).map(|&f| (f, corners(f))))
+        };
         let blocks: Vec<Block<T>> = self.blocks.par_iter().with_min_len(1024).map(block).collect();
         let leaves = |&children: &Children| {
             let mut node = Node::empty();
             for (slot, child) in children.into_iter().enumerate() {
                 node.set_child(slot, child);
-                if child != Child::EMPTY && child.is_leaf() {
+                if going() && child != Child::EMPTY && child.is_leaf() {
                     let (first, count) = child.run();
                     set(&mut node, slot, blocks_bounds(&blocks[first..first + count]));
                 }
@@ -171,7 +174,7 @@ impl Topology {
         };
         let mut nodes: Vec<Node<T>> = self.nodes.par_iter().with_min_len(256).map(leaves).collect();
         // Children stand behind their parents.
-        for i in (0..nodes.len()).rev() {
+        for i in (0..nodes.len()).rev().take_while(|_| going()) {
             for slot in 0..WIDTH {
                 let child = nodes[i].children[slot];
                 if !child.is_leaf() {
@@ -181,7 +184,13 @@ impl Topology {
             }
         }
         let few = Few::new(positions, faces);
-        Bvh { nodes, blocks, few, bounds: bounds::scene_bounds(positions, faces), faces: faces.len() }
+        Bvh {
+            nodes,
+            blocks,
+            few,
+            bounds: bounds::scene_bounds_until(stop, positions, faces),
+            faces: faces.len(),
+        }
     }
 }
 

@@ -198,7 +198,8 @@ pub fn alias_table(
         let weights = In::<T>::of("weights", weights)?;
         let (mut share, mut index) = (Out::<T>::of("share", share)?, Out::<u32>::of("alias", index)?);
         let (weights, share, index) = (weights.slice()?, share.slice()?, index.slice()?);
-        py.detach(|| alias::alias_table(weights, share, index)).map_err(|e| invalid::<T>(e, None))
+        let made = run(py, None, |watch| alias::alias_table(watch, weights, share, index))?;
+        made.map_err(|e| invalid::<T>(e, None))
     })
 }
 
