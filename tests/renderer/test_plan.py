@@ -428,3 +428,30 @@ def test_evidence_says_where_it_was_measured():
     fast = {"size": (48, 27), "rounds": 1, "patience": 0.0, "cache": False, "techniques": ["hard"], "causes": False}
     result = study.run("soft shadows", {"mine": scene}, **fast)
     assert "on mine at 48 × 27: error" in sl.plan(scene, evidence=result, max_error=9.0).find("shadow").reason
+
+
+@pytest.mark.parametrize("question", ["soft shadows", "shadow aliasing", "shadow memory"])
+def test_whatever_a_study_of_shadows_measured_can_be_rendered(question):
+    """Every setting of the techniques that pictures are rendered by is one of theirs, or of their map."""
+    asked, seen = sl.study.find(question), 0
+    scene = Scene([GROUND, BOX], AREA, CAMERA)
+    for candidate in asked.candidates:
+        if candidate.name not in ("hard", "pcf", "pcss", "variance", "exponential_variance", "moment", "ray_traced"):
+            continue
+        settings = candidate.settings()
+        for knobs in (settings[0], settings[-1]):
+            small = knobs | ({"resolution": 64} if "resolution" in knobs else {})
+            plan = sl.plan(scene, (16, 9), evidence=Study(candidate.name, **small), max_error=0.02)
+            assert np.isfinite(sl.render(scene, plan).radiance).all(), (candidate.name, knobs)
+            seen += 1
+    assert seen
+
+
+def test_knobs_of_a_map_go_to_the_map_and_strange_ones_are_named():
+    scene = Scene([GROUND, BOX], AREA, CAMERA)
+    study = Study("hard", resolution=128, surface="second", stored_bits=16)
+    plan = sl.plan(scene, (32, 18), evidence=study, max_error=0.02)
+    assert plan.find("shadow map").settings == {"resolution": 128, "surface": "second", "bits": 16}
+    assert plan.find("shadow").settings == {"technique": "hard"}
+    with pytest.raises(ValueError, match="evidence: expected knobs of pcf and its map, got foo"):
+        sl.plan(scene, evidence=Study("pcf", samples=16, foo=3), max_error=0.02)

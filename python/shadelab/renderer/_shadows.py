@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import inspect
 import math
 from collections.abc import Mapping, Sequence
 from typing import Any
@@ -44,6 +45,9 @@ def picked(evidence: Any, max_error: float | None, budget_ms: float | None) -> t
         raise ValueError(f"evidence: expected an error and a time, got {choice.error} and {choice.ms} ms")
     if choice.technique not in _TECHNIQUES:
         raise ValueError(f"evidence: expected a technique among {', '.join(_TECHNIQUES)}, got {choice.technique!r}")
+    strange = [k for k in choice.knobs if k not in _knobs_of(choice.technique)]
+    if strange:
+        raise ValueError(f"evidence: expected knobs of {choice.technique} and its map, got {', '.join(strange)}")
     wanted = " and ".join(f"{k} {v:g}" for k, v in asked.items())
     unit, scale = getattr(choice, "unit", ("ms", 1.0))
     if unit != "ms" and budget_ms is not None:
@@ -59,6 +63,18 @@ def picked(evidence: Any, max_error: float | None, budget_ms: float | None) -> t
     reason = f"measured{f' on {where}' if where else ''}: error {choice.error:.3g} in {price}, the choice for {wanted}"
     return choice.technique, dict(choice.knobs), reason
 
+
+def _knobs_of(technique: str) -> set[str]:
+    """What can be set of a technique, and of the maps that it looks up in."""
+    of_lookup = set(inspect.signature(getattr(shadow, technique)).parameters)
+    if technique == "ray_traced":
+        return of_lookup
+    of_moments = {"kind", *shadow.moments._OF_MAP} if technique in shadow.moments._OF_MOMENTS else set()
+    return of_lookup | of_moments | {"resolution", *_OF_MAP}
+
+
+# Knobs of studies that belong to the map, as `shadow_map` calls them.
+_OF_MAP = {"surface": "surface", "stored_bits": "bits"}
 
 # How many pixels a texel may cover where a view is nearest before one map is no longer enough, the largest map, and the
 # most cascades. What filters read about a receiver must lie in its map.
@@ -236,7 +252,8 @@ def _as_measured(
     why = "the resolution that was measured"
     if resolution is None:
         resolution, why = resolution_for(facts), "texels of a pixel at the scene's middle, if the resolution allows"
-    return _passes(suffix, Option({"resolution": int(resolution)}, how, 0.0), reason, why, [])
+    chart = {"resolution": int(resolution)} | {_OF_MAP[k]: how.pop(k) for k in list(how) if k in _OF_MAP}
+    return _passes(suffix, Option(chart, how, 0.0), reason, why, [])
 
 
 def _passes(
